@@ -1,0 +1,147 @@
+"""What a path is scored by: each objective maps a batch of paths to an array of N numbers to be minimised."""
+
+from __future__ import annotations
+
+import difflib
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import numpy as np
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.fields import obstacle_potential
+from pymoo_gridpath.grid import OccupancyGrid
+
+
+class Objective(ABC):
+    """A quantity of a path to be minimised.
+
+    Subclass it to add one of your own: set `name`, and compute from the paths, or from the sum of a field over the visited
+    cells if `field` returns one.
+
+    Attributes
+    ----------
+    name : str
+        What tables and files call it.
+    label : str
+        What an axis of a figure says, with the unit.
+    """
+
+    name: str
+    label: str
+
+    def field(self, grid: OccupancyGrid) -> np.ndarray | None:
+        """Return the cost of each cell, shape (height, width), if the objective is a sum over visited cells, else None."""
+        return None
+
+    @abstractmethod
+    def __call__(self, paths, sums: np.ndarray | None) -> np.ndarray:
+        """Score a batch of paths.
+
+        Parameters
+        ----------
+        paths : ColumnPaths
+            N paths.
+        sums : numpy.ndarray or None
+            What the representation prepared from `field`.
+
+        Returns
+        -------
+        numpy.ndarray of float, shape (N,)
+        """
+
+    def __repr__(self) -> str:
+        settings = ", ".join(f"{key}={value!r}" for key, value in vars(self).items())
+        return f"{type(self).__name__}({settings})"
+
+
+class Length(Objective):
+    """Length of the path in cells: straight steps count 1, diagonal ones sqrt(2).
+
+    References
+    ----------
+    Ahmed and Deb (2013), section 3.1.
+    """
+
+    name = "length"
+    label = "Path length [cells]"
+
+    def __call__(self, paths, sums=None):
+        return paths.length
+
+
+class Vulnerability(Objective):
+    """Sum of the obstacles' potential over the visited cells, start and goal included.
+
+    Parameters
+    ----------
+    variance : float, default 0.5
+        Variance of the bell-shaped potential in squared cells, see `pymoo_gridpath.fields.obstacle_potential`.
+
+    References
+    ----------
+    Ahmed and Deb (2013), section 3.2.
+    """
+
+    name = "vulnerability"
+    label = "Path vulnerability"
+
+    def __init__(self, variance: float = 0.5):
+        self.variance = variance
+
+    def field(self, grid):
+        return obstacle_potential(grid, self.variance)
+
+    def __call__(self, paths, sums):
+        return paths.total(sums)
+
+
+class Turn(Objective):
+    """Total turn in degrees, the sum of the absolute heading changes; the smoothest path has the least.
+
+    References
+    ----------
+    Ahmed and Deb (2013), sections 3.3 and 5.6.
+    """
+
+    name = "turn"
+    label = "Total turn [degrees]"
+
+    def __call__(self, paths, sums=None):
+        return paths.turn.astype(float)
+
+
+#: The objectives of the paper by name.
+OBJECTIVES: dict[str, type[Objective]] = {cls.name: cls for cls in (Length, Vulnerability, Turn)}
+
+
+def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> tuple[Objective, ...]:
+    """Return objectives given by name or as objects.
+
+    Raises
+    ------
+    GridPathError
+        If there are none, a name is unknown, or two share a name.
+
+    Examples
+    --------
+    >>> make_objectives(["length", Vulnerability(variance=2.0)])
+    (Length(), Vulnerability(variance=2.0))
+    """
+    if isinstance(objectives, str | Objective):
+        objectives = [objectives]
+    made = []
+    for item in objectives:
+        if isinstance(item, str):
+            if item not in OBJECTIVES:
+                near = difflib.get_close_matches(item, OBJECTIVES, n=1)
+                hint = f"did you mean {near[0]!r}?" if near else f"expected some of {', '.join(OBJECTIVES)}"
+                raise GridPathError(f"there is no objective {item!r}; {hint}")
+            item = OBJECTIVES[item]()
+        elif not isinstance(item, Objective):
+            raise GridPathError(f"objective {item!r} is neither a name nor an Objective")
+        made.append(item)
+    names = [item.name for item in made]
+    if not names or len(set(names)) < len(names):
+        raise GridPathError(f"objectives are {names}, expected one or more, each once")
+    return tuple(made)

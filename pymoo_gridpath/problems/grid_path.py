@@ -1,0 +1,155 @@
+"""Path planning on a grid as a pymoo problem."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from pymoo.core.problem import Problem
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.objectives import Objective, make_objectives
+from pymoo_gridpath.representations import Representation, make_representation
+from pymoo_gridpath.representations.frame import Axis
+
+Obstacles = Literal["penalty", "constraint", "limit"]
+OBSTACLES: tuple[Obstacles, ...] = ("penalty", "constraint", "limit")
+
+
+class GridPathProblem(Problem):
+    """Paths from a start to a goal on an occupancy grid, to be minimised in length, vulnerability, turn or other objectives.
+
+    Parameters
+    ----------
+    grid : OccupancyGrid
+    start, goal : (int, int)
+        Free cells (x, y).
+    representation : {"integer", "binary", "mixed", "absolute"} or Representation, default "integer"
+        How a path is coded as decision variables.
+    objectives : sequence of str or Objective, default ("length", "vulnerability")
+        What is minimised, in this order; names are "length", "vulnerability" and "turn".
+    obstacles : {"penalty", "constraint", "limit"}, default "penalty"
+        How paths are kept off obstacles.
+
+        - "penalty": every interfering cell adds ``penalty`` to every objective. pymoo sees no constraint.
+        - "constraint": ``G`` is the number of interfering cells, which must be zero.
+        - "limit": the paper's eq. (1). An occupied cell has the extremely high potential ``penalty``, which adds to the
+          vulnerability, and ``G`` keeps the vulnerability at or below ``potential_limit``.
+    penalty : float, optional
+        By default the number of cells of the grid, which no path between free cells gains by crossing one obstacle less.
+    potential_limit : float, optional
+        P0, with ``obstacles="limit"`` only, and needed there. Choose it below ``penalty``, so that no path with an interfering cell keeps it.
+    axis : {"auto", "x", "y"}, default "auto"
+        The axis along which monotone paths advance.
+
+    Raises
+    ------
+    GridPathError
+        If an argument is unknown or out of its range, or the query cannot be solved: start or goal outside the grid or on an
+        obstacle, goal unreachable, no path that the representation can code.
+
+    Attributes
+    ----------
+    n_var, n_obj, n_ieq_constr, xl, xu, vtype
+        As in pymoo.
+
+    Notes
+    -----
+    Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and ``interfering_cells`` of each
+    individual: ``pop.get("turn")``. It draws no random number.
+
+    References
+    ----------
+    F. Ahmed and K. Deb, "Multi-objective optimal path planning using elitist non-dominated sorting genetic algorithms",
+    Soft Computing 17(7), 2013, sections 2 to 4.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from pymoo_gridpath import GridPathProblem, OccupancyGrid
+    >>> grid = OccupancyGrid(np.zeros((8, 8)), corner_cutting=True)
+    >>> problem = GridPathProblem(grid, (0, 0), (7, 7))
+    >>> problem.n_var, problem.n_obj, problem.n_ieq_constr
+    (7, 2, 0)
+    >>> problem.evaluate(np.array([[0, 1, 1, 1, 1, 1, 1]])).round(3).tolist()
+    [[9.899, 0.0]]
+    """
+
+    def __init__(
+        self,
+        grid: OccupancyGrid,
+        start: Sequence[int],
+        goal: Sequence[int],
+        representation: str | Representation = "integer",
+        objectives: Sequence[str | Objective] = ("length", "vulnerability"),
+        obstacles: Obstacles = "penalty",
+        penalty: float | None = None,
+        potential_limit: float | None = None,
+        axis: Axis = "auto",
+    ):
+        self.grid = grid
+        self.start, self.goal = grid.check_query(start, goal)
+        self.objectives = make_objectives(objectives)
+        self.obstacles = obstacles
+        self.penalty = float(grid.occupied.size if penalty is None else penalty)
+        self.potential_limit = potential_limit
+        self._check_obstacles()
+        if isinstance(representation, str):
+            representation = make_representation(representation, grid, self.start, self.goal, axis)
+        self.representation = representation
+        fields = [objective.field(grid) for objective in self.objectives]
+        self._sums = [None if field is None else representation.prepare(field) for field in fields]
+        super().__init__(
+            n_var=representation.n_var,
+            n_obj=len(self.objectives),
+            n_ieq_constr=0 if obstacles == "penalty" else 1,
+            xl=representation.xl,
+            xu=representation.xu,
+            vtype=representation.vtype,
+        )
+
+    def _check_obstacles(self) -> None:
+        if self.obstacles not in OBSTACLES:
+            raise GridPathError(f"obstacles is {self.obstacles!r}, expected one of {', '.join(OBSTACLES)}")
+        if not (np.isfinite(self.penalty) and self.penalty > 0):
+            raise GridPathError(f"penalty is {self.penalty:g}, expected a positive number")
+        if self.obstacles != "limit":
+            if self.potential_limit is not None:
+                raise GridPathError(f"potential_limit is for obstacles='limit', not for obstacles={self.obstacles!r}")
+        elif "vulnerability" not in self.objective_names:
+            raise GridPathError(
+                f"obstacles='limit' limits the vulnerability, which is not among the objectives {self.objective_names}"
+            )
+        elif self.potential_limit is None or not self.potential_limit > 0:
+            raise GridPathError(f"potential_limit is {self.potential_limit}, expected a positive number with obstacles='limit'")
+
+    @property
+    def objective_names(self) -> list[str]:
+        """Names of the objectives in the order of the columns of F."""
+        return [objective.name for objective in self.objectives]
+
+    def decode(self, X: np.ndarray):
+        """Return the paths that the rows of X code, see `ColumnPaths`."""
+        return self.representation.decode(X)
+
+    def score(self, paths) -> np.ndarray:
+        """Return the plain objectives of paths, without any penalty, shape (N, n_obj)."""
+        return np.column_stack([f(paths, sums) for f, sums in zip(self.objectives, self._sums, strict=True)])
+
+    def _evaluate(self, x, out, *args, **kwargs):
+        paths = self.decode(x)
+        F = self.score(paths)
+        interfering = paths.interfering_cells
+        if self.obstacles == "penalty":
+            F += (self.penalty * interfering)[:, None]
+        elif self.obstacles == "constraint":
+            out["G"] = interfering[:, None].astype(float)
+        else:
+            k = self.objective_names.index("vulnerability")
+            F[:, k] += self.penalty * interfering
+            out["G"] = F[:, [k]] - self.potential_limit
+        out["F"] = F
+        out["turn"] = paths.turn
+        out["interfering_cells"] = interfering

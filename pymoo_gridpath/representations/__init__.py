@@ -1,0 +1,61 @@
+"""Representations: how a path becomes a row of decision variables, and back."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.representations.absolute import AbsoluteRepresentation
+from pymoo_gridpath.representations.base import MonotoneRepresentation, Representation
+from pymoo_gridpath.representations.binary import BinaryRepresentation
+from pymoo_gridpath.representations.frame import Axis, MonotoneFrame
+from pymoo_gridpath.representations.integer import IntegerRepresentation
+from pymoo_gridpath.representations.mixed import MixedRepresentation
+
+#: The representations by name.
+REPRESENTATIONS: dict[str, type[MonotoneRepresentation]] = {
+    cls.name: cls for cls in (IntegerRepresentation, BinaryRepresentation, MixedRepresentation, AbsoluteRepresentation)
+}
+
+
+def make_representation(
+    name: str, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"
+) -> MonotoneRepresentation:
+    """Return the representation of that name for a query on a grid.
+
+    Parameters
+    ----------
+    name : {"integer", "binary", "mixed", "absolute"}
+    grid : OccupancyGrid
+    start, goal : (int, int)
+        Cells (x, y).
+    axis : {"auto", "x", "y"}, default "auto"
+        See `MonotoneFrame`.
+
+    Raises
+    ------
+    GridPathError
+        If there is no such representation.
+    GridError, UnreachableError
+        If the query cannot be used, see `MonotoneFrame`.
+    """
+    if name not in REPRESENTATIONS:
+        near = difflib.get_close_matches(str(name), REPRESENTATIONS, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"expected one of {', '.join(REPRESENTATIONS)}"
+        raise GridPathError(f"there is no representation {name!r}; {hint}")
+    return REPRESENTATIONS[name](grid, start, goal, axis)
+
+
+__all__ = [
+    "REPRESENTATIONS",
+    "AbsoluteRepresentation",
+    "BinaryRepresentation",
+    "IntegerRepresentation",
+    "MixedRepresentation",
+    "MonotoneFrame",
+    "MonotoneRepresentation",
+    "Representation",
+    "make_representation",
+]
