@@ -54,7 +54,7 @@ class OccupancyGrid:
     array([1.25, 0.75])
     """
 
-    __slots__ = ("_occupied", "_resolution", "_origin", "_corner_cutting", "_name", "__dict__")
+    __slots__ = ("__dict__", "_corner_cutting", "_name", "_occupied", "_origin", "_resolution")
 
     def __init__(
         self,
@@ -250,10 +250,8 @@ class OccupancyGrid:
         """
         local = (np.asarray(cells, dtype=float) + 0.5) * self._resolution
         x0, y0, yaw = self._origin
-        if yaw == 0.0:
-            return local + (x0, y0)
         cos, sin = math.cos(yaw), math.sin(yaw)
-        return local @ np.array([[cos, sin], [-sin, cos]]) + (x0, y0)
+        return local @ np.array([[cos, sin], [-sin, cos]]) + np.array([x0, y0])
 
     def to_cells(self, points: ArrayLike) -> np.ndarray:
         """Return the cells that hold points given in metres; the inverse of `to_metres` (cells may lie outside the grid).
@@ -269,7 +267,7 @@ class OccupancyGrid:
         """
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
-        local = (np.asarray(points, dtype=float) - (x0, y0)) @ np.array([[cos, -sin], [sin, cos]])
+        local = (np.asarray(points, dtype=float) - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
         return np.floor(local / self._resolution).astype(int)
 
     # -- the whole grid -----------------------------------------------------------------------------------------------
@@ -367,9 +365,8 @@ def _as_occupied(occupied: ArrayLike) -> np.ndarray:
         raise GridError(f"a grid needs a two-dimensional array of occupied cells, got {array.ndim} dimensions")
     if array.size == 0:
         raise GridError(f"a grid needs at least one cell, got an array of shape {array.shape}")
-    if array.dtype != bool:
-        if array.dtype.kind not in "iuf" or not np.isin(array, (0, 1)).all():
-            raise GridError("a grid needs an array of booleans, or of 0 (free) and 1 (occupied), got other values")
+    if array.dtype != bool and (array.dtype.kind not in "iuf" or not np.isin(array, (0, 1)).all()):
+        raise GridError("a grid needs an array of booleans, or of 0 (free) and 1 (occupied), got other values")
     copy = array.astype(bool)
     copy.flags.writeable = False
     return copy

@@ -19,8 +19,8 @@ TURN_UNIT = 45
 class ColumnPaths:
     """N paths that advance one column at a time, in the frame of a `MonotoneFrame`.
 
-    A path enters column c at row ``enter[:, c]``, moves straight up or down to row ``leave[:, c]``, and goes on to the next column
-    by a horizontal or diagonal step. Measures cost O(columns) a path, however far it climbs.
+    A path enters column c at row ``enter[:, c]``, moves straight up or down to row ``leave[:, c]``, and goes on to the
+    next column by a horizontal or diagonal step. Measures cost O(columns) a path, however far it climbs.
 
     Parameters
     ----------
@@ -43,18 +43,18 @@ class ColumnPaths:
 
     @functools.cached_property
     def _step(self) -> np.ndarray:
-        """Rows gained by the step into each column but the first: -1, 0 or 1, shape (N, n_columns - 1)."""
-        return self.enter[:, 1:] - self.leave[:, :-1]
+        """Rows gained by the step into each column but the first: -1, 0 or 1, int8, shape (N, n_columns - 1)."""
+        return (self.enter[:, 1:] - self.leave[:, :-1]).astype(np.int8)
 
     @functools.cached_property
     def _climb(self) -> np.ndarray:
         """Rows gained within each column, shape (N, n_columns)."""
         return self.leave - self.enter
 
-    @property
+    @functools.cached_property
     def n_diagonal(self) -> np.ndarray:
         """Number of diagonal steps, int, shape (N,)."""
-        return np.count_nonzero(self._step, axis=1)
+        return np.abs(self._step).sum(axis=1, dtype=np.int64)
 
     @property
     def n_straight(self) -> np.ndarray:
@@ -64,23 +64,18 @@ class ColumnPaths:
     @property
     def length(self) -> np.ndarray:
         """Length in cells: straight steps count 1, diagonal ones sqrt(2); shape (N,)."""
-        diagonal = self.n_diagonal
-        straight = np.abs(self._climb).sum(axis=1) + (self.frame.n_columns - 1) - diagonal
-        return straight + SQRT2 * diagonal
+        return self.n_straight + SQRT2 * self.n_diagonal
 
     @property
     def turn(self) -> np.ndarray:
-        """Total turn in degrees, the sum of the absolute heading changes along the path; shape (N,)."""
-        # Headings in units of 45 degrees: a step to the next column has -1, 0 or 1, a climb -2 or 2. None differ by more
-        # than 180 degrees, so no wrap-around is needed.
-        step = self._step
-        climb = 2 * np.sign(self._climb)
-        vertical = climb != 0
-        before = np.abs(climb[:, 1:] - step)
-        after = np.abs(climb[:, :-1] - step)
-        units = (before * vertical[:, 1:]).sum(axis=1) + (after * vertical[:, :-1]).sum(axis=1)
-        passing = np.abs(step[:, 1:] - step[:, :-1])
-        units += (passing * ~vertical[:, 1:-1]).sum(axis=1)
+        """Total turn in degrees, the sum of the absolute heading changes along the path; int, shape (N,)."""
+        # In units of 45 degrees a step s has the heading -1, 0 or 1 and a climb of sign v the heading 2 v, so that the turn
+        # between them is |2 v - s| = 2 - v s. No two headings differ by more than 180 degrees.
+        step, sign = self._step, np.sign(self._climb).astype(np.int8)
+        climbing = sign != 0
+        units = 2 * (climbing[:, 1:].sum(axis=1) + climbing[:, :-1].sum(axis=1))
+        units -= (step * (sign[:, 1:] + sign[:, :-1])).sum(axis=1)
+        units += (np.abs(step[:, 1:] - step[:, :-1]) * ~climbing[:, 1:-1]).sum(axis=1)
         return TURN_UNIT * units
 
     def total(self, sums: np.ndarray) -> np.ndarray:
@@ -103,11 +98,7 @@ class ColumnPaths:
     def _runs(self) -> tuple[np.ndarray, np.ndarray]:
         """Indices into flattened prefix sums of the bottom of each column's run, and of one above its top."""
         base = np.arange(self.frame.n_columns) * (self.frame.n_rows + 1)
-        low = np.minimum(self.enter, self.leave)
-        high = np.maximum(self.enter, self.leave)
-        low += base
-        high += base + 1
-        return low, high
+        return np.minimum(self.enter, self.leave) + base, np.maximum(self.enter, self.leave) + (base + 1)
 
     @property
     def interfering_cells(self) -> np.ndarray:

@@ -50,9 +50,9 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
     Returns
     -------
     dict
-        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``. Rates are the paper's: crossover 0.9, mutation
-        1 / n for each gene or bit, n the number of columns; that is about one gene a path in the integer coding, and about
-        2 + ceil(log2 n) bits in the binary one.
+        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``. Rates are the paper's:
+        crossover 0.9, mutation 1 / n for each gene or bit, n the number of columns; that is about one gene a path in
+        the integer coding, and about 2 + ceil(log2 n) bits in the binary one.
 
     References
     ----------

@@ -12,9 +12,9 @@ from pymoo_gridpath.errors import GridPathError
 class DiscreteSBX(Crossover):
     """Simulated binary crossover on whole numbers.
 
-    Each gene in which the parents differ takes part with probability ``prob_var``. Its two children are drawn from the distribution of
-    bounded simulated binary crossover, whose probability over each unit cell falls to the whole number in it, and they change places with
-    probability one half, as in pymoo.
+    Each gene in which the parents differ takes part with probability ``prob_var``. Its two children are drawn from the
+    distribution of bounded simulated binary crossover, whose probability over each unit cell falls to the whole number
+    in it, and they change places with probability one half, as in pymoo.
 
     Parameters
     ----------

@@ -12,9 +12,10 @@ from pymoo_gridpath.operators.crossover import bits_of
 class DiscretePolynomialMutation(Mutation):
     """Polynomial mutation on whole numbers.
 
-    A chosen gene moves by a whole number of steps, never zero. The direction is up or down with equal probability (towards the room
-    where it lies on a bound); the step z has the probability that the polynomial distribution (1 - z / range)**eta has over the
-    unit cell around z, cut off at the bound. Rounding the continuous operator instead would leave most genes as they were.
+    A chosen gene moves by a whole number of steps, never zero. The direction is up or down with equal probability
+    (towards the room where it lies on a bound); the step z has the probability that the polynomial distribution (1 - z
+    / range)**eta has over the unit cell around z, cut off at the bound. Rounding the continuous operator instead would
+    leave most genes as they were.
 
     Parameters
     ----------
@@ -27,7 +28,8 @@ class DiscretePolynomialMutation(Mutation):
 
     References
     ----------
-    K. Deb, *Multi-objective optimization using evolutionary algorithms*, Wiley, 2001. Ahmed and Deb (2013), sections 2.2 and 5.2.
+    K. Deb, *Multi-objective optimization using evolutionary algorithms*, Wiley, 2001. Ahmed and Deb (2013), sections
+    2.2 and 5.2.
     """
 
     def __init__(self, eta: float = 20.0, prob_var: float | None = None, prob: float = 1.0, **kwargs):

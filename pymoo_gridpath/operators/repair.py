@@ -8,9 +8,10 @@ from pymoo.core.repair import Repair
 class EdgeFixing(Repair):
     """Bring moves that leave the grid back by the paper's random rule, and round genes that are not whole.
 
-    A move beyond the edge is replaced by one to a row between the vehicle's row and the edge, with a probability that rises linearly from
-    the vehicle's row to the edge, see `MonotoneRepresentation.repair`. Since the fixed gene is written back, decoding and evaluation draw no
-    random number. Children of operators that know only real numbers come out with the problem's ``vtype``.
+    A move beyond the edge is replaced by one to a row between the vehicle's row and the edge, with a probability that
+    rises linearly from the vehicle's row to the edge, see `MonotoneRepresentation.repair`. Since the fixed gene is
+    written back, decoding and evaluation draw no random number. Children of operators that know only real numbers come
+    out with the problem's ``vtype``.
 
     References
     ----------

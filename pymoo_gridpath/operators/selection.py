@@ -9,9 +9,9 @@ from pymoo.operators.selection.tournament import TournamentSelection
 class SmoothnessTournament(TournamentSelection):
     """The modified NSGA-II's binary tournament: rank, then smoothness, then crowding.
 
-    Of two individuals the one with the lower non-domination rank wins; of equal ranks the one with the smaller total turn; of equal
-    turns the one with the larger crowding distance; and else either. If one of them is infeasible, the one with the smaller constraint violation
-    wins first (Deb's parameter-less rule).
+    Of two individuals the one with the lower non-domination rank wins; of equal ranks the one with the smaller total
+    turn; of equal turns the one with the larger crowding distance; and else either. If one of them is infeasible, the
+    one with the smaller constraint violation wins first (Deb's parameter-less rule).
 
     Needs `RankAndSmoothness` as survival, which sets ``rank`` and ``crowding``, and a problem that sets ``turn``.
 

@@ -11,9 +11,9 @@ from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 class RankAndSmoothness(Survival):
     """The modified NSGA-II's survival: whole fronts first, and of the last one the smoothest paths.
 
-    Within the front that does not fit as a whole, individuals with a smaller total turn survive; of equal turns those with the larger
-    crowding distance, which is that of the whole front. Sets ``rank`` and ``crowding``. Infeasible individuals come after all feasible
-    ones, in order of their constraint violation.
+    Within the front that does not fit as a whole, individuals with a smaller total turn survive; of equal turns those
+    with the larger crowding distance, which is that of the whole front. Sets ``rank`` and ``crowding``. Infeasible
+    individuals come after all feasible ones, in order of their constraint violation.
 
     References
     ----------

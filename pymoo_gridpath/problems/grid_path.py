@@ -15,6 +15,9 @@ from pymoo_gridpath.representations import Representation, make_representation
 from pymoo_gridpath.representations.frame import Axis
 
 Obstacles = Literal["penalty", "constraint", "limit"]
+# Genes that are evaluated at a time.
+PART_SIZE = 12000
+
 OBSTACLES: tuple[Obstacles, ...] = ("penalty", "constraint", "limit")
 
 
@@ -38,9 +41,10 @@ class GridPathProblem(Problem):
         - "limit": the paper's eq. (1). An occupied cell has the extremely high potential ``penalty``, which adds to the
           vulnerability, and ``G`` keeps the vulnerability at or below ``potential_limit``.
     penalty : float, optional
-        By default the number of cells of the grid, which no path between free cells gains by crossing one obstacle less.
+        By default the number of cells of the grid, so that crossing one obstacle less outweighs any reasonable detour.
     potential_limit : float, optional
-        P0, with ``obstacles="limit"`` only, and needed there. Choose it below ``penalty``, so that no path with an interfering cell keeps it.
+        P0, with ``obstacles="limit"`` only, and needed there. Choose it below ``penalty``, so that no path with an
+        interfering cell keeps it.
     axis : {"auto", "x", "y"}, default "auto"
         The axis along which monotone paths advance.
 
@@ -57,8 +61,8 @@ class GridPathProblem(Problem):
 
     Notes
     -----
-    Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and ``interfering_cells`` of each
-    individual: ``pop.get("turn")``. It draws no random number.
+    Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
+    ``interfering_cells`` of each individual: ``pop.get("turn")``. It draws no random number.
 
     References
     ----------
@@ -139,9 +143,10 @@ class GridPathProblem(Problem):
         return np.column_stack([f(paths, sums) for f, sums in zip(self.objectives, self._sums, strict=True)])
 
     def _evaluate(self, x, out, *args, **kwargs):
-        paths = self.decode(x)
-        F = self.score(paths)
-        interfering = paths.interfering_cells
+        # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
+        n_parts = max(1, round(len(x) * self.n_var / PART_SIZE))
+        parts = [self._measure(part) for part in np.array_split(x, n_parts)]
+        F, turn, interfering = (np.concatenate(values) for values in zip(*parts, strict=True))
         if self.obstacles == "penalty":
             F += (self.penalty * interfering)[:, None]
         elif self.obstacles == "constraint":
@@ -151,5 +156,9 @@ class GridPathProblem(Problem):
             F[:, k] += self.penalty * interfering
             out["G"] = F[:, [k]] - self.potential_limit
         out["F"] = F
-        out["turn"] = paths.turn
+        out["turn"] = turn
         out["interfering_cells"] = interfering
+
+    def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        paths = self.decode(X)
+        return self.score(paths), paths.turn, paths.interfering_cells

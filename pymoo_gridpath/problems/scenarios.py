@@ -12,9 +12,10 @@ from pymoo_gridpath.representations import IntegerRepresentation
 def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | int) -> OccupancyGrid:
     """Return a square grid of the paper's section 6: a random valid path kept free, the rest occupied with probability p0.
 
-    The path leads from the bottom-left to the top-right corner. The paper does not say how it is drawn; here each column but the
-    last is left at a uniformly random row, the rows in ascending order, and the cells are those of the integer coding. Its
-    mean number of cells, about 1.5 a column, is close to what Table 1 implies at p0 = 1 (10, 23 and 57 cells for 8, 16 and 32).
+    The path leads from the bottom-left to the top-right corner. The paper does not say how it is drawn; here each
+    column but the last is left at a uniformly random row, the rows in ascending order, and the cells are those of the
+    integer coding. Its mean number of cells, about 1.5 a column, is close to what Table 1 implies at p0 = 1 (10, 23
+    and 57 cells for 8, 16 and 32).
 
     Parameters
     ----------

@@ -11,8 +11,8 @@ from pymoo_gridpath.representations.base import MonotoneRepresentation
 class AbsoluteRepresentation(MonotoneRepresentation):
     """Gene k is the row at which column k is left, for every column but the last.
 
-    Steps follow from the rows as in `IntegerRepresentation`. Genes lie in [0, n_rows - 1] (the paper counts from 1), and no path leaves
-    the grid. The paper tried this coding and dropped it for its zig-zag paths.
+    Steps follow from the rows as in `IntegerRepresentation`. Genes lie in [0, n_rows - 1] (the paper counts from 1),
+    and no path leaves the grid. The paper tried this coding and dropped it for its zig-zag paths.
 
     See `MonotoneRepresentation` for the parameters.
 

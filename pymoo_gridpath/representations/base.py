@@ -95,7 +95,7 @@ class MonotoneRepresentation(Representation):
 
     @abstractmethod
     def moves(self, X: np.ndarray) -> np.ndarray:
-        """Return the rows gained by each coded move, int, shape (N, n_columns - 1); the first is the climb in the start column."""
+        """Return the rows gained by each coded move, int, shape (N, n_columns - 1); move 0 is the climb at the start."""
 
     def exit_rows(self, X: np.ndarray) -> np.ndarray:
         """Return the row at which each column but the last is left, int, shape (N, n_columns - 1).
@@ -124,8 +124,8 @@ class MonotoneRepresentation(Representation):
         """Return X with the paper's random edge fixing written into the genes (section 2.1).
 
         A move that would leave the grid is replaced by one to a row between the vehicle's row and the edge, drawn with a
-        probability that rises linearly from zero at the vehicle's row to its maximum at the edge. At the edge itself there is no
-        such row, and the vehicle stays in its row.
+        probability that rises linearly from zero at the vehicle's row to its maximum at the edge. At the edge itself
+        there is no such row, and the vehicle stays in its row.
 
         Parameters
         ----------
@@ -157,7 +157,7 @@ def _leaves_grid(moves: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
 
 def _rows_within(moves: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
     """Add up moves from the start row, stopping each at the edge of the grid."""
-    rows = np.cumsum(moves, axis=1)
+    rows = np.cumsum(moves, axis=1, dtype=np.int32)
     rows += frame.start_row
     outside = np.flatnonzero((rows.min(axis=1) < 0) | (rows.max(axis=1) >= frame.n_rows))
     if len(outside):

@@ -14,13 +14,14 @@ class BinaryRepresentation(MonotoneRepresentation):
     """Each move is two bits for the way into the next column and ceil(log2 n_rows) bits for the climb there.
 
     The direction bits: 11 diagonally up, then y up; 00 diagonally down, then y down; 10 horizontally, then y up; 01
-    horizontally, then y down. The row of bits begins with the y of the climb in the start column, goes on with direction and y of
-    each step, and ends with the direction bits of the step into the last column, where the path goes straight to the goal.
+    horizontally, then y down. The row of bits begins with the y of the climb in the start column, goes on with
+    direction and y of each step, and ends with the direction bits of the step into the last column, where the path
+    goes straight to the goal.
 
-    The climb in the start column is upwards, as in the paper. Where the start is not in the bottom row, values that would pass the
-    top edge count on from the bottom row, so that every row has a code; values of n_rows and more leave the grid. A step into
-    the last column that would leave the grid is horizontal. Directions are taken as coded: where the grid forbids to cut corners,
-    a diagonal that does so makes the path illegal.
+    The climb in the start column is upwards, as in the paper. Where the start is not in the bottom row, values that
+    would pass the top edge count on from the bottom row, so that every row has a code; values of n_rows and more leave
+    the grid. A step into the last column that would leave the grid is horizontal. Directions are taken as coded: where
+    the grid forbids to cut corners, a diagonal that does so makes the path illegal.
 
     See `MonotoneRepresentation` for the parameters.
 
@@ -71,7 +72,7 @@ class BinaryRepresentation(MonotoneRepresentation):
     def decode(self, X: np.ndarray) -> ColumnPaths:
         frame = self.frame
         direction = self._split(X)[1]
-        leave = np.empty((len(direction), frame.n_columns), dtype=np.int64)
+        leave = np.empty((len(direction), frame.n_columns), dtype=np.int32)
         leave[:, :-1] = self.exit_rows(X)
         leave[:, -1] = frame.goal_row
         step = _step(direction)
@@ -85,8 +86,8 @@ class BinaryRepresentation(MonotoneRepresentation):
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the bits of paths, bool, shape (N, n_var).
 
-        The inverse of `decode` but for two redundancies: a horizontal step without a climb is 10, never 01, and a path that climbs
-        back after a diagonal step, which the coding leaves out as dominated, gets the bits of the horizontal step.
+        The inverse of `decode` but for two redundancies: a horizontal step without a climb is 10, never 01, and a path
+        that climbs back after a diagonal step, which the coding leaves out as dominated, gets the bits of the horizontal step.
         """
         frame = self.frame
         start = (paths.leave[:, 0] - frame.start_row) % frame.n_rows

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pymoo_gridpath.errors import GridError, UnreachableError
-from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 
 Axis = Literal["auto", "x", "y"]
 
 
 class MonotoneFrame:
-    """A view of a grid in which the path advances one column at a time, from the start on the left to a goal that lies no lower.
+    """A view of a grid in which paths advance one column at a time, from the start on the left to a goal no lower.
 
     Ahmed and Deb (2013, section 2) code paths from the bottom-left to the top-right corner of a square grid. The frame swaps
     and flips axes so that every other query looks like theirs: *column* 0 holds the start, the last column holds the goal, and
@@ -165,7 +165,7 @@ class MonotoneFrame:
         exit_rows : numpy.ndarray of int, shape (N, n_columns - 1)
             Within 0 and n_rows - 1.
         """
-        leave = np.empty((len(exit_rows), self.n_columns), dtype=np.int64)
+        leave = np.empty((len(exit_rows), self.n_columns), dtype=np.int32)
         leave[:, :-1] = exit_rows
         leave[:, -1] = self.goal_row
         step = np.sign(leave[:, 1:] - leave[:, :-1])
@@ -179,9 +179,8 @@ class MonotoneFrame:
     def flanks_at(self, row: np.ndarray, step: np.ndarray) -> np.ndarray:
         """Return `flanks` for steps that leave all columns but the last, both arguments of shape (N, n_columns - 1)."""
         n = self.n_columns - 1
-        index = (step + 1) * (n * self.n_rows)
-        index += np.arange(n) * self.n_rows
-        index += row
+        index = row + np.arange(n) * self.n_rows
+        index += (step + np.int64(1)) * (n * self.n_rows)
         return self.flanks.ravel().take(index)
 
     def admits_path(self) -> bool:

@@ -12,8 +12,8 @@ class IntegerRepresentation(MonotoneRepresentation):
     """Each gene is the number of rows gained by one move; the coding that the paper found best.
 
     Gene 0 is the climb in the start column. Gene k, from 1 to n_columns - 2, is the step into column k: 0 is horizontal, a
-    positive y is a diagonal step up and then y - 1 cells straight up, a negative y the same downwards. The step into the last column
-    is not coded: it goes towards the goal's row, diagonally unless it is there, and then straight to the goal.
+    positive y is a diagonal step up and then y - 1 cells straight up, a negative y the same downwards. The step into
+    the last column is not coded: it goes towards the goal's row, diagonally unless it is there, and then straight to the goal.
 
     Genes lie in [-(n_rows - 1), n_rows - 1]; gene 0 keeps to what its column has room for, which is [0, n - 1] in the paper's
     corner-to-corner case.
@@ -57,8 +57,9 @@ class IntegerRepresentation(MonotoneRepresentation):
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the genes of paths, the inverse of `decode`, int, shape (N, n_var).
 
-        A path that steps horizontally and then climbs has no code of its own, for the diagonal step dominates it (section 2.3). It
-        gets the genes of the path that leaves every column at the same row, which is no longer and crosses no other cell.
+        A path that steps horizontally and then climbs has no code of its own, for the diagonal step dominates it
+        (section 2.3). It gets the genes of the path that leaves every column at the same row, which is no longer and
+        crosses no other cell.
         """
         return np.diff(paths.leave[:, :-1], axis=1, prepend=self.frame.start_row)
 

@@ -11,11 +11,12 @@ from pymoo_gridpath.representations.base import MonotoneRepresentation
 class MixedRepresentation(MonotoneRepresentation):
     """Each move is a bit (1 up, 0 down) and the number of rows gained by it.
 
-    With n = n_columns, a row holds first n - 1 bits, then n - 1 integers, so that each part has operators of its own. Bit k - 1 and
-    integer k, for k from 1 to n - 2, make the step into column k: 0 rows is a horizontal step whatever the bit, y > 0 rows are a
-    diagonal step and then y - 1 cells straight on. Integer 0 is the climb in the start column, with a sign of its own where the
-    start is not in the bottom row. The last bit is the step into the last column: 1 goes diagonally towards the goal's row (in the
-    paper, up), 0 horizontally; from there the path goes straight to the goal.
+    With n = n_columns, a row holds first n - 1 bits, then n - 1 integers, so that each part has operators of its own.
+    Bit k - 1 and integer k, for k from 1 to n - 2, make the step into column k: 0 rows is a horizontal step whatever
+    the bit, y > 0 rows are a diagonal step and then y - 1 cells straight on. Integer 0 is the climb in the start
+    column, with a sign of its own where the start is not in the bottom row. The last bit is the step into the last
+    column: 1 goes diagonally towards the goal's row (in the paper, up), 0 horizontally; from there the path goes
+    straight to the goal.
 
     Integers lie in [0, n_rows], as in the paper; integer 0 keeps to what its column has room for.
 
@@ -54,8 +55,8 @@ class MixedRepresentation(MonotoneRepresentation):
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the genes of paths, int, shape (N, n_var).
 
-        The inverse of `decode` but for the redundancy of the coding: the bit of a horizontal step is always 1. Paths that have no
-        code of their own are treated as in `IntegerRepresentation.encode`.
+        The inverse of `decode` but for the redundancy of the coding: the bit of a horizontal step is always 1. Paths
+        that have no code of their own are treated as in `IntegerRepresentation.encode`.
         """
         moves = np.diff(paths.leave[:, :-1], axis=1, prepend=self.frame.start_row)
         last = paths.enter[:, -1:] != paths.leave[:, -2:-1]

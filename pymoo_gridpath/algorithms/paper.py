@@ -1,0 +1,98 @@
+"""The planner of Ahmed and Deb (2013), with the paper's parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.algorithms.soo.nonconvex.ga import GA
+from pymoo.core.algorithm import Algorithm
+from pymoo.core.termination import Termination
+from pymoo.termination.max_gen import MaximumGenerationTermination
+from pymoo.util.display.multi import MultiObjectiveOutput
+from pymoo.util.display.single import SingleObjectiveOutput
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.objectives import Objective, make_objectives
+from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament, paper_operators
+from pymoo_gridpath.problems import GridPathProblem
+
+
+class Setup(NamedTuple):
+    """What `pymoo.optimize.minimize` takes, in its order."""
+
+    problem: GridPathProblem
+    algorithm: Algorithm
+    termination: Termination
+
+
+def ahmed_deb_2013(
+    grid: OccupancyGrid,
+    start: Sequence[int],
+    goal: Sequence[int],
+    representation: str = "integer",
+    objectives: Sequence[str | Objective] | str = ("length", "vulnerability"),
+    pop_size: int = 500,
+    n_gen: int = 500,
+    termination: Termination | None = None,
+    **problem_options,
+) -> Setup:
+    """Return a run of the paper, ready for pymoo.
+
+    ``minimize(*ahmed_deb_2013(grid, start, goal), seed=1)`` is one run. The paper merges ten:
+    `pymoo_gridpath.algorithms.minimize_runs`.
+
+    Two objectives: the modified NSGA-II, obstacles as penalty, crossover rate 0.9 with index 10, mutation rate 1 / n with
+    index 20 (sections 5.1 and 5.2). Three objectives: the same with the original NSGA-II, where crowding alone decides within a rank
+    (section 5.6). One objective: a genetic algorithm with obstacles as constraint and crossover index 2 (section 5.5).
+
+    Parameters
+    ----------
+    grid : OccupancyGrid
+        The paper's grids have ``corner_cutting=True``.
+    start, goal : (int, int)
+        Cells (x, y); in the paper the bottom-left and the top-right corner.
+    representation : {"integer", "binary", "mixed", "absolute"}, default "integer"
+    objectives : sequence of str or Objective, default ("length", "vulnerability")
+    pop_size : int, default 500
+        The paper takes 500, and 200 for Table 1.
+    n_gen : int, default 500
+        Number of generations.
+    termination : pymoo termination, optional
+        In place of ``n_gen``, such as `FirstLegalPath` for Table 1.
+    **problem_options
+        Further arguments of `GridPathProblem`, such as ``obstacles`` or ``axis``.
+
+    Returns
+    -------
+    Setup
+        ``(problem, algorithm, termination)``.
+
+    Raises
+    ------
+    GridPathError
+        If an argument is out of its range, see `GridPathProblem`.
+
+    References
+    ----------
+    F. Ahmed and K. Deb, "Multi-objective optimal path planning using elitist non-dominated sorting genetic algorithms",
+    Soft Computing 17(7), 2013.
+    """
+    for name, value in (("pop_size", pop_size), ("n_gen", n_gen)):
+        if value < 1:
+            raise GridPathError(f"{name} is {value}, expected at least 1")
+    made = make_objectives(objectives)
+    if len(made) == 1:
+        problem_options.setdefault("obstacles", "constraint")
+    problem = GridPathProblem(grid, start, goal, representation, made, **problem_options)
+    if len(made) == 1:
+        operators = paper_operators(problem, eta_crossover=2.0)
+        algorithm = GA(pop_size=pop_size, output=SingleObjectiveOutput(), **operators)
+    else:
+        operators = paper_operators(problem)
+        if len(made) == 2:
+            operators |= {"selection": SmoothnessTournament(), "survival": RankAndSmoothness()}
+        algorithm = NSGA2(pop_size=pop_size, output=MultiObjectiveOutput(), **operators)
+    return Setup(problem, algorithm, termination or MaximumGenerationTermination(n_gen))

@@ -1,0 +1,33 @@
+"""When a run ends."""
+
+from __future__ import annotations
+
+from pymoo.core.termination import Termination
+from pymoo.termination.max_gen import MaximumGenerationTermination
+
+
+class FirstLegalPath(Termination):
+    """End a run as soon as the population holds a path without interfering cells, or after ``n_max_gen`` generations.
+
+    Parameters
+    ----------
+    n_max_gen : int, default 500
+
+    Attributes
+    ----------
+    found : bool
+        Whether a legal path ended the run.
+
+    References
+    ----------
+    Ahmed and Deb (2013), section 6.
+    """
+
+    def __init__(self, n_max_gen: int = 500):
+        super().__init__()
+        self.budget = MaximumGenerationTermination(n_max_gen)
+        self.found = False
+
+    def _update(self, algorithm):
+        self.found = bool((algorithm.pop.get("interfering_cells") == 0).any())
+        return 1.0 if self.found else self.budget.update(algorithm)
