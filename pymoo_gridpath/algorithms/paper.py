@@ -16,7 +16,7 @@ from pymoo.util.display.single import SingleObjectiveOutput
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective, make_objectives
-from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament, paper_operators
+from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, paper_operators
 from pymoo_gridpath.problems import GridPathProblem
 
 
@@ -93,6 +93,8 @@ def ahmed_deb_2013(
     else:
         operators = paper_operators(problem)
         if len(made) == 2:
-            operators |= {"selection": SmoothnessTournament(), "survival": RankAndSmoothness()}
+            selection = SmoothnessTournament()
+            mating = ArrayMating(selection, operators["crossover"], operators["mutation"], operators["repair"])
+            operators |= {"selection": selection, "survival": RankAndSmoothness(), "mating": mating}
         algorithm = NSGA2(pop_size=pop_size, output=MultiObjectiveOutput(), **operators)
     return Setup(problem, algorithm, termination or MaximumGenerationTermination(n_gen))

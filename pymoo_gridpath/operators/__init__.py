@@ -10,6 +10,7 @@ from pymoo_gridpath.operators.crossover import (
     TwoPointCrossover,
 )
 from pymoo_gridpath.operators.duplicates import RowDuplicates
+from pymoo_gridpath.operators.mating import ArrayMating
 from pymoo_gridpath.operators.mutation import BitwiseMutation, DiscretePolynomialMutation, MixedMutation
 from pymoo_gridpath.operators.repair import EdgeFixing
 from pymoo_gridpath.operators.sampling import RandomSampling
@@ -17,6 +18,7 @@ from pymoo_gridpath.operators.selection import SmoothnessTournament
 from pymoo_gridpath.operators.survival import RankAndSmoothness
 
 __all__ = [
+    "ArrayMating",
     "BitwiseMutation",
     "DiscretePolynomialMutation",
     "DiscreteSBX",

@@ -14,8 +14,8 @@ class RowDuplicates(DuplicateElimination):
     """
 
     def _do(self, pop, other, is_duplicate):
-        seen = set() if other is None else set(_keys(self.func(other)))
-        for k, key in enumerate(_keys(self.func(pop))):
+        seen = set() if other is None else set(row_keys(self.func(other)))
+        for k, key in enumerate(row_keys(self.func(pop))):
             if key in seen:
                 is_duplicate[k] = True
             elif other is None:
@@ -23,6 +23,7 @@ class RowDuplicates(DuplicateElimination):
         return is_duplicate
 
 
-def _keys(X: np.ndarray) -> list[bytes]:
+def row_keys(X: np.ndarray) -> list[bytes]:
+    """Return the bytes of each row of a matrix, to compare rows by hashing."""
     rows = np.ascontiguousarray(X)
     return rows.view(np.dtype((np.void, rows.dtype.itemsize * rows.shape[1]))).ravel().tolist()

@@ -38,13 +38,14 @@ def by_rank_turn_crowding(pop, P: np.ndarray, random_state=None, **kwargs) -> np
     -------
     numpy.ndarray of int, shape (n_tournaments, 1)
     """
-    cv, turn = pop.get("CV")[:, 0], pop.get("turn").astype(float)
+    cv, turn, rank, crowding = pop.get("CV", "turn", "rank", "crowding")
     # The infeasible carry no rank of this generation; among them only the violation counts.
+    cv = cv[:, 0]
     feasible = cv <= 0.0
-    rank = np.array([r if ok else 0 for r, ok in zip(pop.get("rank"), feasible, strict=True)], dtype=float)
-    crowding = np.array([c if ok else 0 for c, ok in zip(pop.get("crowding"), feasible, strict=True)], dtype=float)
+    rank = np.where(feasible, rank, 0).astype(float)
+    crowding = np.where(feasible, crowding, 0.0).astype(float)
     both = feasible[P].all(axis=1)
-    return tournament(P, random_state, (cv, None), (rank, both), (turn, both), (-crowding, both))
+    return tournament(P, random_state, (cv, None), (rank, both), (turn.astype(float), both), (-crowding, both))
 
 
 def tournament(P: np.ndarray, random_state, *keys) -> np.ndarray:

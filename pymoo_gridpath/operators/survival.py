@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from pymoo.core.survival import Survival
-from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 
 
@@ -23,20 +22,56 @@ class RankAndSmoothness(Survival):
     def __init__(self):
         super().__init__(filter_infeasible=True)
         self.nds = NonDominatedSorting()
-        self.crowding = get_crowding_function("cd")
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
-        F, turn = pop.get("F").astype(float, copy=False), pop.get("turn").astype(float)
-        survivors: list[np.ndarray] = []
-        n_missing = len(pop) if n_survive is None else n_survive
-        for rank, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_missing)):
-            crowding = self.crowding.do(F[front], n_remove=0)
-            pop[front].set("rank", np.full(len(front), rank), "crowding", crowding)
-            if len(front) > n_missing:
-                order = np.lexsort((-crowding, turn[front]))
-                front = np.asarray(front)[order[:n_missing]]
-            survivors.append(front)
-            n_missing -= len(front)
-            if n_missing <= 0:
-                break
-        return pop[np.concatenate(survivors)]
+        F, turn = pop.get("F", "turn")
+        F, turn = F.astype(float, copy=False), turn.astype(float)
+        n_survive = len(pop) if n_survive is None else n_survive
+        rank = np.full(len(pop), len(pop))
+        for k, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_survive)):
+            rank[front] = k
+        crowding = crowding_distances(F, rank)
+        # Whole fronts come first, so only in the last one that is needed do the further keys decide who survives.
+        survivors = np.lexsort((-crowding, turn, rank))[:n_survive]
+        pop = pop[survivors]
+        pop.set("rank", rank[survivors], "crowding", crowding[survivors])
+        return pop
+
+
+def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:
+    """Return the crowding distance of each point within its front, for all fronts at once.
+
+    Parameters
+    ----------
+    F : numpy.ndarray, shape (N, n_obj)
+        Objectives.
+    rank : numpy.ndarray of int, shape (N,)
+        The front of each point.
+
+    Returns
+    -------
+    numpy.ndarray, shape (N,)
+        The mean over objectives of the distance between a point's two neighbours over the range of its front; ``inf`` at the ends
+        of a front, and in fronts of one or two points. An objective that is constant over a front counts as 0 there.
+
+    References
+    ----------
+    K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, "A fast and elitist multiobjective genetic algorithm: NSGA-II", IEEE
+    Transactions on Evolutionary Computation 6(2), 2002, section III.B.
+    """
+    total = np.zeros(len(F))
+    for values in F.T:
+        order = np.lexsort((values, rank))
+        value, front = values[order], rank[order]
+        first = np.concatenate([[True], front[1:] != front[:-1]])
+        last = np.concatenate([first[1:], [True]])
+        # Position of the front's first and last point, for every point.
+        group = np.cumsum(first) - 1
+        spread = value[last][group] - value[first][group]
+        gap = np.zeros(len(F))
+        gap[1:-1] = value[2:] - value[:-2]
+        distance = np.divide(gap, spread, out=np.zeros(len(F)), where=spread > 0)
+        distance[(first | last) & (spread > 0)] = np.inf
+        total[order] += distance
+    size = np.bincount(rank)[rank]
+    return np.where(size <= 2, np.inf, total / F.shape[1])

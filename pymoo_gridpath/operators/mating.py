@@ -1,0 +1,87 @@
+"""Mating on arrays: the same steps as pymoo's, without reading individuals one by one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from pymoo.core.mating import Mating
+from pymoo.core.population import Population
+from pymoo.core.variable import get
+
+from pymoo_gridpath.operators.duplicates import row_keys
+
+# Rounds of mating that one selection serves. Reading the attributes of a population costs more than its tournaments do.
+ROUNDS_PER_SELECTION = 4
+
+
+class ArrayMating(Mating):
+    """Selection, crossover, mutation, repair and duplicate elimination on one array of genes.
+
+    Pass it as ``mating=`` to any algorithm derived from pymoo's ``GeneticAlgorithm``. Operators are called by the hook that every
+    pymoo operator has (``_do``, on arrays), and their probabilities mean what they mean in pymoo. Children equal to a member of the
+    population or to one another are always left out; mating goes on until there are enough.
+
+    Parameters
+    ----------
+    selection : pymoo.core.selection.Selection
+    crossover : pymoo.core.crossover.Crossover
+    mutation : pymoo.core.mutation.Mutation
+    repair : pymoo.core.repair.Repair
+    n_max_iterations : int, default 100
+        Rounds after which fewer children than wanted are returned.
+    """
+
+    def __init__(self, selection, crossover, mutation, repair, n_max_iterations: int = 100):
+        super().__init__(selection, crossover, mutation, repair=repair, n_max_iterations=n_max_iterations)
+
+    def do(self, problem, pop, n_offsprings, random_state=None, n_max_iterations=None, **kwargs):
+        assert random_state is not None
+        X = pop.get("X")
+        seen = set(row_keys(X))
+        offspring: list[np.ndarray] = []
+        missing = n_offsprings
+        parents = np.empty((0, self.crossover.n_parents), dtype=int)
+        for _ in range(n_max_iterations or self.n_max_iterations):
+            n_matings = math.ceil(missing / self.crossover.n_offsprings)
+            if len(parents) < n_matings:
+                n_select = ROUNDS_PER_SELECTION * n_matings
+                parents = self.selection.do(
+                    problem,
+                    pop,
+                    n_select,
+                    self.crossover.n_parents,
+                    to_pop=False,
+                    random_state=random_state,
+                    **kwargs,
+                )
+            children = self._cross(problem, X[parents[:n_matings].T], random_state, kwargs)
+            parents = parents[n_matings:]
+            children = self._mutate(problem, children, random_state, kwargs)
+            children = self.repair._do(problem, children, random_state=random_state, **kwargs)
+            offspring.append(_unseen(children, seen)[:missing])
+            missing -= len(offspring[-1])
+            if missing == 0:
+                break
+        return Population.new("X", np.concatenate(offspring))
+
+    def _cross(self, problem, X, random_state, kwargs):
+        """Return the children of pairs of parents, shape (2, n_matings, n_var), as rows."""
+        n = self.crossover.n_offsprings
+        crossed = random_state.random(X.shape[1]) < get(self.crossover.prob)
+        children = self.crossover._do(problem, X, random_state=random_state, **kwargs)
+        return np.where(crossed[None, :, None], children, X[:n]).reshape(-1, X.shape[-1])
+
+    def _mutate(self, problem, X, random_state, kwargs):
+        mutated = random_state.random(len(X)) <= get(self.mutation.prob)
+        return np.where(mutated[:, None], self.mutation._do(problem, X, random_state=random_state, **kwargs), X)
+
+
+def _unseen(X: np.ndarray, seen: set[bytes]) -> np.ndarray:
+    """Return the rows of X that are not in ``seen``, each once, and add them to it."""
+    new = []
+    for k, key in enumerate(row_keys(X)):
+        if key not in seen:
+            seen.add(key)
+            new.append(k)
+    return X[new]
