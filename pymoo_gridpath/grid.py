@@ -65,15 +65,17 @@ class OccupancyGrid:
         name: str = "grid",
     ):
         self._occupied = _as_occupied(occupied)
-        self._resolution = float(resolution)
+        self._resolution = _as_float(resolution)
         if not (math.isfinite(self._resolution) and self._resolution > 0):
             raise GridError(f"resolution is {resolution}, expected a positive number of metres per cell")
-        pose = tuple(float(v) for v in origin)
+        pose = tuple(_as_float(v) for v in origin)
         if len(pose) == 2:
             pose = (*pose, 0.0)
         if len(pose) != 3 or not all(math.isfinite(v) for v in pose):
-            raise GridError(f"origin is {tuple(origin)}, expected (x, y) or (x, y, yaw) in metres and radians")
+            raise GridError(f"origin is {origin!r}, expected (x, y) or (x, y, yaw) in metres and radians")
         self._origin = pose
+        if not isinstance(corner_cutting, bool | np.bool_):
+            raise GridError(f"corner_cutting is {corner_cutting!r}, expected True or False")
         self._corner_cutting = bool(corner_cutting)
         self._name = str(name)
 
@@ -198,7 +200,7 @@ class OccupancyGrid:
         """
         try:
             x, y = (int(v) for v in cell)
-            whole = all(int(v) == v for v in cell)
+            whole = (x, y) == tuple(cell)
         except (TypeError, ValueError, OverflowError):
             whole, x, y = False, 0, 0
         if not whole:
@@ -356,6 +358,14 @@ class OccupancyGrid:
     @functools.cached_property
     def _graph(self):
         return self.move_graph()
+
+
+def _as_float(value) -> float:
+    """Return a number as a float, and what is no number as NaN."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return math.nan
 
 
 def _as_occupied(occupied: ArrayLike) -> np.ndarray:

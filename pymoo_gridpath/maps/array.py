@@ -1,0 +1,77 @@
+"""Maps saved by `numpy.save`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+import numpy as np
+
+from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.maps._files import check_size, make_grid, require_file
+
+MAGIC = b"\x93NUMPY"
+
+
+def read_npy(
+    path: str | os.PathLike[str],
+    corner_cutting: bool = False,
+    resolution: float = 1.0,
+    origin: Sequence[float] = (0.0, 0.0, 0.0),
+) -> OccupancyGrid:
+    """Read a map from a ``.npy`` file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file: an array of shape (height, width) of booleans, or of 0 (free) and 1 (occupied). Row 0 is the *bottom* row, as
+        in `OccupancyGrid`, not the top one as in an image. Pickled objects are never loaded.
+    corner_cutting : bool, default False
+        Whether a diagonal step may touch an occupied cell.
+    resolution : float, default 1.0
+        Side of a cell in metres.
+    origin : (float, float) or (float, float, float), default (0, 0, 0)
+        Pose of the grid in metres and radians.
+
+    Returns
+    -------
+    OccupancyGrid
+
+    Raises
+    ------
+    MapError
+        If the file cannot be read or holds anything else than such an array.
+    """
+    require_file(path)
+    try:
+        array = _load(path)
+    except MapError:
+        raise
+    except Exception:
+        # A damaged header is parsed as Python text and can fail in almost any way.
+        raise MapError(path, "the array cannot be read, expected a whole .npy file written by numpy.save") from None
+    if array.dtype != bool:
+        wrong = (array != 0) & (array != 1)
+        if wrong.any():
+            y, x = np.argwhere(wrong)[0]
+            raise MapError(path, f"cell ({x}, {y}) holds {array[y, x]}, expected 0 (free) or 1 (occupied)")
+    return make_grid(path, array != 0, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
+
+
+def _load(path) -> np.ndarray:
+    """Load the array, once the header has said that it is one of ours."""
+    with open(path, "rb") as file:
+        if file.read(len(MAGIC)) != MAGIC:
+            raise MapError(path, "the file does not begin as a NumPy array, expected a .npy file written by numpy.save")
+        file.seek(0)
+        version = np.lib.format.read_magic(file)
+        read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, dtype = read_header(file)
+        if dtype.kind not in "biuf":
+            raise MapError(path, f"the array holds {dtype}, expected booleans or the numbers 0 and 1")
+        if len(shape) != 2:
+            raise MapError(path, f"the array has {len(shape)} dimensions, expected 2 (height, width)")
+        check_size(path, shape[1], shape[0])
+        file.seek(0)
+        return np.load(file, allow_pickle=False)

@@ -1,0 +1,181 @@
+"""Maps and scenarios of the MovingAI benchmarks: ``.map`` and ``.scen``.
+
+Format: N. R. Sturtevant, "Benchmarks for Grid-Based Pathfinding", IEEE Transactions on Computational Intelligence and AI in
+Games 4(2), 2012.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_string, shorten
+
+PASSABLE = ".GS"
+# Water can be entered from water only, so to a robot that stands on the ground it is an obstacle.
+OCCUPIED = "@OTW"
+
+_SCEN_COLUMNS = "bucket, map, width, height, start column, start row, goal column, goal row, length"
+
+
+@dataclass(frozen=True)
+class Query:
+    """One entry of a ``.scen`` file, in this package's coordinates.
+
+    Parameters
+    ----------
+    bucket : int
+        Group of entries of like length.
+    map_name : str
+        The map as the file names it.
+    width, height : int
+        Size of that map in cells.
+    start, goal : (int, int)
+        Cells (x, y), y up. The file's (column, row) pairs count rows from the top; they are already turned.
+    optimal_length : float
+        Length in cells of the shortest path that cuts no corner.
+    """
+
+    bucket: int
+    map_name: str
+    width: int
+    height: int
+    start: Cell
+    goal: Cell
+    optimal_length: float
+
+
+def read_movingai(
+    path: str | os.PathLike[str],
+    corner_cutting: bool = False,
+    resolution: float = 1.0,
+    origin: Sequence[float] = (0.0, 0.0, 0.0),
+) -> OccupancyGrid:
+    """Read a map of the MovingAI benchmarks.
+
+    The ground ``.`` and ``G`` and the swamp ``S`` are free. Trees ``T``, out of bounds ``@`` and ``O``, and water ``W``, which
+    cannot be entered from the ground, are occupied.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The ``.map`` file; its first row is the top one.
+    corner_cutting : bool, default False
+        Whether a diagonal step may touch an occupied cell. The benchmark's lengths hold for False.
+    resolution : float, default 1.0
+        Side of a cell in metres; the format has none.
+    origin : (float, float) or (float, float, float), default (0, 0, 0)
+        Pose of the grid in metres and radians; the format has none.
+
+    Returns
+    -------
+    OccupancyGrid
+
+    Raises
+    ------
+    MapError
+        If the file cannot be read or is not such a map; the message names the line.
+    """
+    lines = read_string(path).rstrip().split("\n")
+    width, height, first = _read_header(path, lines)
+    rows = lines[first:]
+    if len(rows) != height:
+        line = min(first + height, len(lines)) + (len(rows) > height)
+        raise MapError(path, f"found {len(rows)} rows below 'map', expected {height}", line)
+    occupied = parse_rows(path, rows, first + 1, width, PASSABLE, OCCUPIED)
+    return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
+
+
+def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -> list[Query]:
+    """Read the queries of a MovingAI scenario.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The ``.scen`` file. Its header is ``version 1`` or ``version 1.0``; columns are separated by tabs or spaces.
+    grid : OccupancyGrid, optional
+        The map that the queries are meant for. If given, an entry for a map of another size is an error.
+
+    Returns
+    -------
+    list of Query
+        In the order of the file, with start and goal as cells (x, y), y up.
+
+    Raises
+    ------
+    MapError
+        If the file cannot be read or is not such a scenario, or if an entry's size is not that of ``grid``; the message
+        names the line.
+    """
+    lines = read_string(path).rstrip().split("\n")
+    if lines[0].split() not in (["version", "1"], ["version", "1.0"]):
+        raise MapError(path, f"found {shorten(lines[0])}, expected 'version 1' or 'version 1.0'", 1)
+    queries = []
+    for line, text in enumerate(lines[1:], start=2):
+        if text.strip():
+            query = _read_query(path, text, line)
+            if grid is not None and (query.width, query.height) != (grid.width, grid.height):
+                raise MapError(
+                    path,
+                    f"the entry is for a map of {query.width} x {query.height} cells, "
+                    f"expected {grid.width} x {grid.height} as the grid {grid.name!r}",
+                    line,
+                )
+            queries.append(query)
+    return queries
+
+
+def _read_header(path, lines: list[str]) -> tuple[int, int, int]:
+    """Return width, height and the index of the first row."""
+    if lines[0].split() != ["type", "octile"]:
+        raise MapError(path, f"found {shorten(lines[0])}, expected 'type octile'", 1)
+    sizes: dict[str, int] = {}
+    for line, text in enumerate(lines[1:4], start=2):
+        words = text.split()
+        if words == ["map"] and len(sizes) == 2:
+            check_size(path, sizes["width"], sizes["height"])
+            return sizes["width"], sizes["height"], line
+        missing = [key for key in ("height", "width") if key not in sizes]
+        if len(words) != 2 or words[0] not in missing:
+            expected = " or ".join(f"'{key}' and a number" for key in missing) or "'map'"
+            raise MapError(path, f"found {shorten(text)}, expected {expected}", line)
+        sizes[words[0]] = _whole(path, words[1], words[0], line)
+    raise MapError(path, "the file ends within its header, expected 'type octile', height, width and 'map'", len(lines))
+
+
+def _read_query(path, text: str, line: int) -> Query:
+    fields = text.split()
+    if len(fields) != 9:
+        # A map's name may hold spaces where the columns are separated by tabs.
+        fields = text.split("\t")
+    if len(fields) != 9:
+        raise MapError(path, f"the entry has {len(text.split())} columns, expected 9 ({_SCEN_COLUMNS})", line)
+    names = ("bucket", "", "width", "height", "start column", "start row", "goal column", "goal row")
+    numbers = [_whole(path, fields[k], names[k], line) for k in (0, 2, 3, 4, 5, 6, 7)]
+    bucket, width, height, *cells = numbers
+    check_size(path, width, height, line)
+    ends = []
+    for role, column, row in (("start", *cells[:2]), ("goal", *cells[2:])):
+        if column >= width or row >= height:
+            where = f"{role} column {column} and row {row}"
+            raise MapError(path, f"found the {where}, expected them within {width} columns and {height} rows", line)
+        ends.append((column, height - 1 - row))
+    try:
+        length = float(fields[8])
+    except ValueError:
+        length = math.nan
+    if not (math.isfinite(length) and length >= 0):
+        raise MapError(path, f"the length is {shorten(fields[8].strip())}, expected a number of cells, zero or more", line)
+    return Query(bucket, fields[1].strip(), width, height, ends[0], ends[1], length)
+
+
+def _whole(path, word: str, name: str, line: int) -> int:
+    word = word.strip()
+    # A number of ten digits is far above any size; longer ones are not worth converting.
+    if not (word.isascii() and word.isdigit() and len(word) <= 10):
+        raise MapError(path, f"the {name} is {shorten(word)}, expected a whole number, zero or more", line)
+    return int(word)

@@ -1,0 +1,209 @@
+"""Maps as plain text, the format of the maps that ship with the package.
+
+A file is, in UTF-8,
+
+1. header lines ``key: value``, all optional, each key at most once:
+
+   ==================  ==================================================================================
+   ``name``            what figures call the map; the file's name if absent
+   ``title``           one line about it
+   ``resolution``      side of a cell in metres, 1 if absent
+   ``origin``          x y yaw (or x y) of the bottom-left corner in metres and radians, 0 0 0 if absent
+   ``corner_cutting``  true or false, false if absent
+   ``start``           x y of a good start, a free cell counted from the bottom left
+   ``goal``            x y of a good goal, likewise
+   ``radius``          radius in metres of a robot that can make that way, 0 (a point) if absent
+   ==================  ==================================================================================
+
+2. the rows, the *top* row first, all of one width: ``.`` and ``0`` are free, ``#``, ``@``, ``X`` and ``1`` are occupied.
+
+The numbers of a header value are separated by spaces or commas. Blank lines before the rows and after them are ignored. There
+are no comments, because ``#`` is an obstacle.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_string, shorten
+
+FREE = ".0"
+OCCUPIED = "#@X1"
+
+
+@dataclass(frozen=True)
+class TextHeader:
+    """The header of a plain text map; None where it says nothing.
+
+    Parameters
+    ----------
+    name, title : str or None
+    resolution : float or None
+        Metres per cell.
+    origin : tuple of float or None
+        x, y (and yaw) in metres and radians.
+    corner_cutting : bool or None
+    start, goal : (int, int) or None
+        Cells (x, y), y up.
+    radius : float or None
+        Metres.
+    """
+
+    name: str | None = None
+    title: str | None = None
+    resolution: float | None = None
+    origin: tuple[float, ...] | None = None
+    corner_cutting: bool | None = None
+    start: Cell | None = None
+    goal: Cell | None = None
+    radius: float | None = None
+
+
+def read_text(
+    path: str | os.PathLike[str],
+    corner_cutting: bool | None = None,
+    resolution: float | None = None,
+    origin: Sequence[float] | None = None,
+) -> OccupancyGrid:
+    """Read a map from plain text; the format is described at the top of this module.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    corner_cutting : bool, optional
+        Whether a diagonal step may touch an occupied cell. If not given, the header decides, else False.
+    resolution : float, optional
+        Side of a cell in metres. If not given, the header decides, else 1.
+    origin : (float, float) or (float, float, float), optional
+        Pose of the grid in metres and radians. If not given, the header decides, else (0, 0, 0).
+
+    Returns
+    -------
+    OccupancyGrid
+
+    Raises
+    ------
+    MapError
+        If the file cannot be read or is not such a map; the message names the line.
+    """
+    header, lines, first = _split(path)
+    rows = lines[first:]
+    width = len(rows[0].rstrip())
+    check_size(path, width, len(rows), first + 1)
+    occupied = parse_rows(path, rows, first + 1, width, FREE, OCCUPIED)
+    options = {
+        "corner_cutting": header.corner_cutting if corner_cutting is None else corner_cutting,
+        "resolution": header.resolution if resolution is None else resolution,
+        "origin": header.origin if origin is None else origin,
+    }
+    grid = make_grid(path, occupied, header.name, **{key: value for key, value in options.items() if value is not None})
+    for role, cell in (("start", header.start), ("goal", header.goal)):
+        if cell is not None and not grid.is_free(cell):
+            line = next(k for k, text in enumerate(lines) if text.partition(":")[0].strip() == role) + 1
+            size = f"{grid.width} x {grid.height}"
+            raise MapError(path, f"{role} is {cell[0]}, {cell[1]}, expected a free cell of the {size} cells", line)
+    return grid
+
+
+def read_text_header(path: str | os.PathLike[str]) -> TextHeader:
+    """Read only the header of a plain text map.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+
+    Returns
+    -------
+    TextHeader
+
+    Raises
+    ------
+    MapError
+        If the file cannot be read or a header line is wrong; the message names the line.
+    """
+    return _split(path)[0]
+
+
+def _split(path) -> tuple[TextHeader, list[str], int]:
+    """Return the header, all lines and the index of the first row."""
+    lines = read_string(path).rstrip().split("\n")
+    found: dict[str, object] = {}
+    for index, text in enumerate(lines):
+        key, colon, value = (part.strip() for part in text.partition(":"))
+        if not colon and key:
+            return TextHeader(**found), lines, index  # pyright: ignore[reportArgumentType]
+        if not colon:
+            continue
+        if key not in _HEADER:
+            raise MapError(path, f"found the key {shorten(key)}, expected one of {', '.join(_HEADER)} or a row", index + 1)
+        if key in found:
+            raise MapError(path, f"the key {key!r} is given again, expected it once", index + 1)
+        convert, expected = _HEADER[key]
+        try:
+            found[key] = convert(value)
+        except ValueError:
+            raise MapError(path, f"{key} is {shorten(value)}, expected {expected}", index + 1) from None
+    raise MapError(path, "found no row, expected at least one row of '.' and '#'")
+
+
+def _numbers(value: str) -> list[float]:
+    numbers = [float(word) for word in value.replace(",", " ").split()]
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError
+    return numbers
+
+
+def _text(value: str) -> str:
+    if not value:
+        raise ValueError
+    return value
+
+
+def _pose(value: str) -> tuple[float, ...]:
+    numbers = _numbers(value)
+    if len(numbers) not in (2, 3):
+        raise ValueError
+    return tuple(numbers)
+
+
+def _metres(value: str) -> float:
+    (number,) = _numbers(value)
+    if number < 0:
+        raise ValueError
+    return number
+
+
+def _resolution(value: str) -> float:
+    if _metres(value) == 0:
+        raise ValueError
+    return _metres(value)
+
+
+def _cell(value: str) -> Cell:
+    x, y = (int(word) for word in value.replace(",", " ").split())
+    return x, y
+
+
+def _bool(value: str) -> bool:
+    if value not in ("true", "false"):
+        raise ValueError
+    return value == "true"
+
+
+_HEADER = {
+    "name": (_text, "a name"),
+    "title": (_text, "a line of text"),
+    "resolution": (_resolution, "a positive number of metres per cell"),
+    "origin": (_pose, "two or three numbers x y yaw in metres and radians"),
+    "corner_cutting": (_bool, "true or false"),
+    "start": (_cell, "two whole numbers x y"),
+    "goal": (_cell, "two whole numbers x y"),
+    "radius": (_metres, "a number of metres, zero or more"),
+}

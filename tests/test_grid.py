@@ -1,0 +1,165 @@
+"""The occupancy grid: its errors, cells, metres, regions, inflation and move graph."""
+
+import copy
+import heapq
+import math
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pymoo_gridpath.errors import GridError, UnreachableError
+from pymoo_gridpath.grid import OccupancyGrid
+
+
+def random_grid(seed, shape=(7, 9), density=0.35, corner_cutting=False):
+    occupied = np.random.default_rng(seed).random(shape) < density
+    occupied[0, 0] = occupied[-1, -1] = False
+    return OccupancyGrid(occupied, corner_cutting=corner_cutting)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"occupied": [0, 1]}, "two-dimensional array of occupied cells, got 1 dimension"),
+        ({"occupied": np.zeros((0, 3))}, r"at least one cell, got an array of shape \(0, 3\)"),
+        ({"occupied": [[0, 2]]}, "got other values"),
+        ({"occupied": [["a", "b"]]}, "got other values"),
+        ({"occupied": [[math.nan, 0.0]]}, "got other values"),
+        ({"occupied": [[0]], "resolution": 0}, "resolution is 0, expected a positive number"),
+        ({"occupied": [[0]], "resolution": math.nan}, "resolution is nan"),
+        ({"occupied": [[0]], "resolution": "wide"}, "resolution is wide"),
+        ({"occupied": [[0]], "origin": (1,)}, "origin is"),
+        ({"occupied": [[0]], "origin": (0, math.inf, 0)}, "origin is"),
+        ({"occupied": [[0]], "origin": "here"}, "origin is"),
+    ],
+)
+def test_bad_arguments_are_refused_in_words(arguments, message):
+    with pytest.raises(GridError, match=message):
+        OccupancyGrid(**arguments)
+
+
+def test_grid_is_immutable_and_owns_its_array():
+    source = np.zeros((3, 4), dtype=bool)
+    grid = OccupancyGrid(source)
+    source[0, 0] = True
+    assert grid.n_occupied == 0
+    with pytest.raises(ValueError, match="read-only"):
+        grid.occupied[0, 0] = True
+    with pytest.raises(AttributeError):
+        grid.resolution = 2.0  # pyright: ignore
+
+
+@pytest.mark.parametrize("clone", [copy.deepcopy, copy.copy, lambda g: pickle.loads(pickle.dumps(g))])
+def test_copies_are_equal_and_still_immutable(clone):
+    grid = OccupancyGrid([[0, 1]], 0.5, (1, 2, 0.3), True, "a")
+    other = clone(grid)
+    assert other == grid and hash(other) == hash(grid)
+    assert not other.occupied.flags.writeable
+    assert other != grid.replace(name="b") and other != grid.replace(occupied=[[1, 1]])
+
+
+def test_replace_knows_its_arguments():
+    grid = OccupancyGrid([[0, 1]])
+    assert grid.replace(resolution=2.0).resolution == 2.0
+    with pytest.raises(TypeError, match="no argument 'resolutoin'"):
+        grid.replace(resolutoin=2.0)
+
+
+def test_cells_are_checked_and_the_nearest_free_cell_is_named():
+    grid = OccupancyGrid([[1, 1, 0], [1, 1, 1], [0, 1, 1]], name="demo")
+    assert grid.check_cell((2, 0)) == (2, 0)
+    assert grid.check_cell(np.array([2, 0])) == (2, 0)
+    with pytest.raises(GridError, match=r"start \(0, 1\) lies on an obstacle of the grid 'demo'; the nearest free cell is \(0, 2\)"):
+        grid.check_cell((0, 1), "start")
+    with pytest.raises(GridError, match=r"goal \(9, -1\) lies outside .* 3 x 3 cells .* nearest free cell is \(2, 0\)"):
+        grid.check_cell((9, -1), "goal")
+    for bad in ((1.5, 0), (1,), "ab", None, (math.nan, 0), (math.inf, 0), (1, 2, 3)):
+        with pytest.raises(GridError, match="expected a cell"):
+            grid.check_cell(bad)
+    with pytest.raises(GridError, match="no free cell"):
+        OccupancyGrid([[1]]).check_cell((0, 0))
+
+
+@given(st.integers(0, 10**6), st.integers(-5, 14), st.integers(-5, 12))
+def test_nearest_free_cell_is_nearest(seed, x, y):
+    grid = random_grid(seed)
+    near = grid.nearest_free((x, y))
+    free = [(a, b) for b in range(grid.height) for a in range(grid.width) if not grid.occupied[b, a]]
+    assert near in free
+    assert math.dist(near, (x, y)) == min(math.dist(cell, (x, y)) for cell in free)
+
+
+def test_queries_need_a_path():
+    grid = OccupancyGrid([[0, 1, 0], [0, 1, 0]])
+    with pytest.raises(UnreachableError, match=r"goal \(2, 1\) cannot be reached from start \(0, 0\)"):
+        grid.check_query((0, 0), (2, 1))
+    with pytest.raises(GridError, match="same cell"):
+        grid.check_query((0, 0), (0, 0))
+
+
+def test_metres_and_back():
+    grid = OccupancyGrid(np.zeros((4, 6)), resolution=0.5, origin=(10.0, 20.0))
+    assert grid.to_metres((0, 0)).tolist() == [10.25, 20.25]
+    turned = OccupancyGrid(np.zeros((4, 6)), resolution=0.5, origin=(10.0, 20.0, math.pi / 2))
+    # A quarter turn to the left: the map's x axis points along the world's y axis.
+    assert turned.to_metres((2, 0)) == pytest.approx([10.0 - 0.25, 20.0 + 1.25])
+    cells = np.array([[0, 0], [5, 3], [2, 1]])
+    for g in (grid, turned, grid.replace(origin=(1, 2, 0.7))):
+        assert g.to_cells(g.to_metres(cells)).tolist() == cells.tolist()
+
+
+def plain_dijkstra(grid, start):
+    """Shortest lengths by a heap and the rules in words."""
+    best, heap = {start: 0.0}, [(0.0, start)]
+    while heap:
+        d, (x, y) = heapq.heappop(heap)
+        if d > best[x, y]:
+            continue
+        for dx in (-1, 0, 1):
+            for dy in (-1, 0, 1):
+                cell = (x + dx, y + dy)
+                if (dx, dy) == (0, 0) or not grid.is_free(cell):
+                    continue
+                if dx and dy and not grid.corner_cutting and not (grid.is_free((x + dx, y)) and grid.is_free((x, y + dy))):
+                    continue
+                new = d + math.hypot(dx, dy)
+                if new < best.get(cell, math.inf) - 1e-12:
+                    best[cell] = new
+                    heapq.heappush(heap, (new, cell))
+    return best
+
+
+@given(st.integers(0, 10**6), st.booleans())
+def test_shortest_lengths_and_regions_agree_with_a_plain_search(seed, corner_cutting):
+    grid = random_grid(seed, corner_cutting=corner_cutting)
+    expected = plain_dijkstra(grid, (0, 0))
+    lengths = grid.shortest_lengths((0, 0))
+    for y in range(grid.height):
+        for x in range(grid.width):
+            assert lengths[y, x] == pytest.approx(expected.get((x, y), math.inf))
+            reached = grid.regions[y, x] == grid.regions[0, 0] and not grid.occupied[y, x]
+            assert reached == ((x, y) in expected)
+
+
+@given(st.integers(0, 10**6), st.floats(0, 4), st.sampled_from([0.5, 1.0, 2.0]))
+def test_inflation_occupies_what_a_disc_would_touch(seed, radius, resolution):
+    grid = random_grid(seed, density=0.1).replace(resolution=resolution)
+    inflated = grid.inflate(radius)
+    ys, xs = np.nonzero(grid.occupied)
+    for y in range(grid.height):
+        for x in range(grid.width):
+            # Distance from the centre to the nearest point of each occupied square, in metres.
+            gaps = np.hypot(np.maximum(abs(xs - x) - 0.5, 0), np.maximum(abs(ys - y) - 0.5, 0)) * resolution
+            if len(gaps) and abs(gaps.min() - radius) < 1e-6:
+                continue
+            touched = bool(len(gaps)) and gaps.min() < radius
+            assert inflated.occupied[y, x] == (grid.occupied[y, x] or touched)
+    assert inflated.resolution == grid.resolution and inflated.name == grid.name
+
+
+@pytest.mark.parametrize("radius", [-0.1, math.nan, math.inf])
+def test_inflation_refuses_bad_radii(radius):
+    with pytest.raises(GridError, match="robot radius"):
+        random_grid(0).inflate(radius)
