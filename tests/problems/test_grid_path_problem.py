@@ -1,0 +1,185 @@
+"""GridPathProblem: objectives, the three ways to treat obstacles, and the promises made to pymoo."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+import reference
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.optimize import minimize
+from pymoo_gridpath.errors import GridPathError, UnreachableError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.objectives import Length, Objective, Vulnerability
+from pymoo_gridpath.operators import paper_operators
+from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+from pymoo_gridpath.problems import grid_path as module
+
+GRID = random_dense_grid(12, 0.3, 4)
+START, GOAL = (0, 0), (11, 11)
+
+
+def genes(problem, n=50, seed=0):
+    rng = np.random.default_rng(seed)
+    X = rng.integers(problem.xl, problem.xu, size=(n, problem.n_var), endpoint=True).astype(problem.vtype)
+    return problem.representation.repair(X, rng)
+
+
+def plain(problem, X):
+    """Length, vulnerability, turn and interfering cells of every path, by definition."""
+    paths = problem.decode(X)
+    rows = []
+    for i in range(len(X)):
+        cells = paths.cells(i).tolist()
+        rows.append(
+            [
+                reference.length(cells),
+                reference.vulnerability(cells, problem.grid),
+                reference.turn(cells),
+                reference.interfering_cells(cells, problem.grid),
+            ]
+        )
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("representation", ["integer", "binary", "mixed", "absolute"])
+def test_penalty_adds_to_every_objective(representation):
+    problem = GridPathProblem(GRID, START, GOAL, representation, ("length", "vulnerability", "turn"), penalty=100.0)
+    X = genes(problem)
+    out = problem.evaluate(X, return_as_dictionary=True)
+    expected = plain(problem, X)
+    assert out["F"] == pytest.approx(expected[:, :3] + 100.0 * expected[:, 3:], abs=1e-6)
+    assert out["turn"] == pytest.approx(expected[:, 2]) and out["interfering_cells"] == pytest.approx(expected[:, 3])
+    assert problem.n_constr == 0 and (expected[:, 3] > 0).any()
+
+
+def test_constraint_is_the_number_of_interfering_cells():
+    problem = GridPathProblem(GRID, START, GOAL, obstacles="constraint")
+    X = genes(problem)
+    F, G = problem.evaluate(X)
+    expected = plain(problem, X)
+    assert F == pytest.approx(expected[:, :2], abs=1e-6) and G[:, 0] == pytest.approx(expected[:, 3])
+
+
+def test_limit_is_the_papers_equation_1():
+    problem = GridPathProblem(GRID, START, GOAL, obstacles="limit", potential_limit=5.0)
+    X = genes(problem)
+    F, G = problem.evaluate(X)
+    expected = plain(problem, X)
+    potential = expected[:, 1] + GRID.occupied.size * expected[:, 3]
+    assert F == pytest.approx(np.column_stack([expected[:, 0], potential]), abs=1e-6)
+    assert G[:, 0] == pytest.approx(potential - 5.0, abs=1e-6)
+    assert (expected[G[:, 0] <= 0, 3] == 0).all()
+
+
+def test_evaluation_in_parts_equals_evaluation_at_once(monkeypatch):
+    problem = GridPathProblem(GRID, START, GOAL)
+    X = genes(problem, 101)
+    whole = problem.evaluate(X)
+    monkeypatch.setattr(module, "PART_SIZE", 40)
+    assert np.array_equal(problem.evaluate(X), whole)
+    assert np.array_equal(np.vstack([problem.evaluate(x) for x in X]), whole)
+
+
+def test_objectives_of_ones_own():
+    class Cells(Objective):
+        name, label = "cells", "Cells visited"
+
+        def field(self, grid):
+            return np.ones(grid.shape)
+
+        def __call__(self, paths, sums):
+            return paths.total(sums)
+
+    problem = GridPathProblem(GRID, START, GOAL, objectives=[Cells(), Length(), Vulnerability(2.0)], obstacles="constraint")
+    X = genes(problem)
+    paths = problem.decode(X)
+    F = problem.score(paths)
+    assert F[:, 0].tolist() == [len(paths.cells(i)) for i in range(len(X))]
+    assert F[0, 2] == pytest.approx(reference.vulnerability(paths.cells(0).tolist(), GRID, variance=2.0), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"objectives": ("lenght",)}, "no objective 'lenght'; did you mean 'length'"),
+        ({"objectives": ()}, "expected one or more"),
+        ({"objectives": ("length", "length")}, "each once"),
+        ({"objectives": (3,)}, "neither a name nor an Objective"),
+        ({"representation": "real"}, "no representation 'real'"),
+        ({"obstacles": "wall"}, "obstacles is 'wall', expected one of penalty, constraint, limit"),
+        ({"penalty": -1}, "penalty is -1"),
+        ({"obstacles": "limit"}, "potential_limit is None, expected a positive number"),
+        ({"potential_limit": 3.0}, "potential_limit is for obstacles='limit'"),
+        ({"obstacles": "limit", "potential_limit": 1.0, "objectives": ("length",)}, "limits the vulnerability"),
+        ({"start": (-1, 0)}, r"start \(-1, 0\) lies outside"),
+        ({"goal": START}, "same cell"),
+    ],
+)
+def test_bad_arguments_are_refused_in_words(options, message):
+    with pytest.raises(GridPathError, match=message):
+        GridPathProblem(**({"grid": GRID, "start": START, "goal": GOAL} | options))
+
+
+def test_unreachable_goal_is_refused():
+    with pytest.raises(UnreachableError, match="cannot be reached"):
+        GridPathProblem(OccupancyGrid([[0, 1, 0]]), (0, 0), (2, 0))
+
+
+def test_stock_nsga2_just_works_on_real_genes():
+    result = minimize(GridPathProblem(GRID, START, GOAL), NSGA2(pop_size=20), ("n_gen", 5), seed=1)
+    assert result.F.shape[1] == 2 and np.isfinite(result.F).all()
+
+
+@pytest.mark.parametrize("clone", [copy.deepcopy, lambda p: pickle.loads(pickle.dumps(p))])
+def test_copies_evaluate_the_same(clone):
+    problem = GridPathProblem(GRID, START, GOAL, "mixed", obstacles="constraint")
+    X = genes(problem)
+    assert all(np.array_equal(a, b) for a, b in zip(problem.evaluate(X), clone(problem).evaluate(X), strict=True))
+
+
+def test_evaluation_leaves_its_arguments_and_random_state_alone():
+    problem = GridPathProblem(GRID, START, GOAL)
+    X = genes(problem)
+    before, state = X.copy(), np.random.get_state()[1].copy()
+    first = problem.evaluate(X)
+    assert np.array_equal(X, before) and np.array_equal(problem.evaluate(X), first)
+    assert np.array_equal(np.random.get_state()[1], state)
+
+
+def test_ties_carry_no_float_noise():
+    """Different paths over cells of equal worth have exactly equal objectives."""
+    grid = OccupancyGrid(np.zeros((9, 9)), corner_cutting=True)
+    problem = GridPathProblem(grid, START, (8, 8), objectives=("length",))
+    rng = np.random.default_rng(0)
+    rows = np.stack([rng.permutation([0] * 3 + [1] * 2 + [3] * 2) for _ in range(200)])
+    X = np.column_stack([np.zeros(200, dtype=int), rows])
+    assert len(np.unique(problem.evaluate(X))) == 1
+
+
+@pytest.mark.parametrize("size", [8, 16])
+@pytest.mark.parametrize("p0", [0.0, 0.4, 1.0])
+def test_random_dense_grids_hold_a_path_and_the_density(size, p0):
+    for seed in range(20):
+        grid = random_dense_grid(size, p0, seed)
+        assert grid == random_dense_grid(size, p0, seed)
+        problem = GridPathProblem(grid, (0, 0), (size - 1, size - 1))  # raises where no monotone path exists
+        assert problem.representation.frame.admits_path()
+    cells = size**2 - np.mean([random_dense_grid(size, 1.0, s).n_occupied for s in range(200)])
+    # Cells of the free path: one a column and the further cells of its climbs.
+    assert 1.3 * size < cells < 1.7 * size
+    share = np.mean([random_dense_grid(size, p0, s).n_occupied for s in range(200)]) / (size**2 - cells)
+    assert share == pytest.approx(p0, abs=0.02)
+
+
+@pytest.mark.parametrize(("size", "p0"), [(1, 0.5), (8, -0.1), (8, 1.1)])
+def test_scenarios_check_their_arguments(size, p0):
+    with pytest.raises(GridPathError, match="expected"):
+        random_dense_grid(size, p0, 0)
+
+
+def test_operators_fit_any_pymoo_algorithm():
+    problem = GridPathProblem(GRID, START, GOAL)
+    result = minimize(problem, NSGA2(pop_size=40, **paper_operators(problem)), ("n_gen", 30), seed=1)
+    assert result.pop.get("X").dtype.kind == "i"
+    assert (result.pop.get("interfering_cells") == 0).any()
