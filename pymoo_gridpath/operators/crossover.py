@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from pymoo.core.crossover import Crossover
-from pymoo.core.variable import Real, get
+from pymoo.core.variable import Real
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.operators.parameters import number
 
 
 class DiscreteSBX(Crossover):
@@ -55,13 +56,13 @@ class DiscreteSBX(Crossover):
         -------
         numpy.ndarray of int, shape (2, n_matings, n_var)
         """
-        taking_part = (random_state.random(X.shape[1:]) < get(self.prob_var)) & (X[0] != X[1])
+        taking_part = (random_state.random(X.shape[1:]) < number(self.prob_var)) & (X[0] != X[1])
         mating, gene = np.nonzero(taking_part)
         a, b = X[0, mating, gene], X[1, mating, gene]
         low, high = np.minimum(a, b).astype(float), np.maximum(a, b).astype(float)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         draw = random_state.random(len(a))
-        exponent = 1.0 / (get(self.eta) + 1.0)
+        exponent = 1.0 / (number(self.eta) + 1.0)
         first = middle - half * _spread(1.0 + (low - xl[gene]) / half, draw, exponent)
         second = middle + half * _spread(1.0 + (xu[gene] - high) / half, draw, exponent)
         first = np.clip(np.rint(first), xl[gene], xu[gene])

@@ -14,8 +14,8 @@ class RowDuplicates(DuplicateElimination):
     """
 
     def _do(self, pop, other, is_duplicate):
-        seen = set() if other is None else set(row_keys(self.func(other)))
-        for k, key in enumerate(row_keys(self.func(pop))):
+        seen = set() if other is None else set(row_keys(other.get("X")))
+        for k, key in enumerate(row_keys(pop.get("X"))):
             if key in seen:
                 is_duplicate[k] = True
             elif other is None:

@@ -7,9 +7,9 @@ import math
 import numpy as np
 from pymoo.core.mating import Mating
 from pymoo.core.population import Population
-from pymoo.core.variable import get
 
 from pymoo_gridpath.operators.duplicates import row_keys
+from pymoo_gridpath.operators.parameters import number
 
 # Rounds of mating that one selection serves. Reading the attributes of a population costs more than its tournaments do.
 ROUNDS_PER_SELECTION = 4
@@ -68,12 +68,12 @@ class ArrayMating(Mating):
     def _cross(self, problem, X, random_state, kwargs):
         """Return the children of pairs of parents, shape (2, n_matings, n_var), as rows."""
         n = self.crossover.n_offsprings
-        crossed = random_state.random(X.shape[1]) < get(self.crossover.prob)
+        crossed = random_state.random(X.shape[1]) < number(self.crossover.prob)
         children = self.crossover._do(problem, X, random_state=random_state, **kwargs)
         return np.where(crossed[None, :, None], children, X[:n]).reshape(-1, X.shape[-1])
 
     def _mutate(self, problem, X, random_state, kwargs):
-        mutated = random_state.random(len(X)) <= get(self.mutation.prob)
+        mutated = random_state.random(len(X)) <= number(self.mutation.prob)
         return np.where(mutated[:, None], self.mutation._do(problem, X, random_state=random_state, **kwargs), X)
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from pymoo.core.mutation import Mutation
-from pymoo.core.variable import Real, get
+from pymoo.core.variable import Real
 
 from pymoo_gridpath.operators.crossover import bits_of
+from pymoo_gridpath.operators.parameters import number
 
 
 class DiscretePolynomialMutation(Mutation):
@@ -37,7 +38,7 @@ class DiscretePolynomialMutation(Mutation):
         self.eta = Real(eta, bounds=(3.0, 30.0), strict=(0.0, 100.0))
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
-        return self.mutate(X, problem.xl, problem.xu, self.get_prob_var(problem), random_state)
+        return self.mutate(X, problem.xl, problem.xu, number(self.get_prob_var(problem)), random_state)
 
     def mutate(self, X: np.ndarray, xl: np.ndarray, xu: np.ndarray, rate: float, random_state) -> np.ndarray:
         """Return a mutated copy.
@@ -61,7 +62,7 @@ class DiscretePolynomialMutation(Mutation):
         room = np.where(rising, up, down)
         # Inverse of the survival function of the polynomial distribution between steps 1/2 and room + 1/2.
         span = xu[gene] - xl[gene] + 0.5
-        power = get(self.eta) + 1.0
+        power = number(self.eta) + 1.0
         near, far = (1.0 - 0.5 / span) ** power, (1.0 - np.minimum(room + 0.5, span) / span) ** power
         draw = far + (near - far) * random_state.random(len(row))
         step = np.clip(np.rint(span * (1.0 - draw ** (1.0 / power))), 1, room)
@@ -98,7 +99,7 @@ class BitwiseMutation(Mutation):
         self.final = final
 
     def _do(self, problem, X, *args, random_state=None, algorithm=None, **kwargs):
-        return self.flip(X, self.get_prob_var(problem) * self.decay(algorithm), random_state)
+        return self.flip(X, number(self.get_prob_var(problem)) * self.decay(algorithm), random_state)
 
     def decay(self, algorithm) -> float:
         """Return the share of the initial rate that is left."""
@@ -136,7 +137,7 @@ class MixedMutation(Mutation):
 
     def _do(self, problem, X, *args, random_state=None, algorithm=None, **kwargs):
         n = bits_of(problem)
-        rate = 1.0 / n if self.prob_var is None else get(self.prob_var)
+        rate = 1.0 / n if self.prob_var is None else number(self.prob_var)
         bits = self.bits.flip(X[:, :n], rate * self.bits.decay(algorithm), random_state)
         integers = self.integers.mutate(X[:, n:], problem.xl[n:], problem.xu[n:], rate, random_state)
         return np.concatenate([bits, integers], axis=1)

@@ -1,0 +1,95 @@
+"""Measure evaluations per second, and a generation of this package's set-up beside pymoo's stock one.
+
+Run with ``python benchmarks/throughput.py``; ``--help`` lists the options. Every figure is the best of several repetitions, and the
+two set-ups take turns in one process, so that a noisy machine distorts their ratio little.
+"""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import time
+
+import numpy as np
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.operators.crossover.sbx import SBX
+from pymoo.operators.mutation.pm import PM
+from pymoo.operators.repair.rounding import RoundingRepair
+from pymoo.operators.sampling.rnd import IntegerRandomSampling
+from pymoo.optimize import minimize
+
+from pymoo_gridpath.algorithms import ahmed_deb_2013
+from pymoo_gridpath.operators import RandomSampling
+from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+
+
+def evaluations_per_second(size: int, pop_size: int, representation: str, seconds: float) -> float:
+    """Return how many paths of one population are evaluated in a second (objectives, turn and interfering cells)."""
+    problem = GridPathProblem(random_dense_grid(size, 0.2, 1), (0, 0), (size - 1, size - 1), representation)
+    rng = np.random.default_rng(0)
+    X = problem.representation.repair(RandomSampling().do(problem, pop_size, random_state=rng).get("X"), rng)
+    best, end = np.inf, time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        start = time.perf_counter()
+        for _ in range(10):
+            problem.evaluate(X, return_as_dictionary=True)
+        best = min(best, (time.perf_counter() - start) / 10)
+    return pop_size / best
+
+
+def stock_nsga2(pop_size: int) -> NSGA2:
+    """Return pymoo's NSGA-II as its documentation sets it up for whole numbers: SBX and PM with rounding."""
+    return NSGA2(
+        pop_size=pop_size,
+        sampling=IntegerRandomSampling(),
+        crossover=SBX(prob=0.9, eta=10, vtype=float, repair=RoundingRepair()),
+        mutation=PM(eta=20, vtype=float, repair=RoundingRepair()),
+        eliminate_duplicates=True,
+    )
+
+
+def seconds_per_generation(size: int, pop_size: int, n_gen: int, repeats: int) -> list[tuple[float, float]]:
+    """Return (ours, stock) processor seconds per generation, one pair per repetition; the two take turns."""
+    grid = random_dense_grid(size, 0.2, 1)
+    problem, ours, termination = ahmed_deb_2013(grid, (0, 0), (size - 1, size - 1), pop_size=pop_size, n_gen=n_gen)
+    pairs = []
+    for repeat in range(repeats):
+        times = []
+        for algorithm in (ours, stock_nsga2(pop_size)):
+            start = time.process_time()
+            minimize(problem, algorithm, termination, seed=repeat + 1)
+            times.append((time.process_time() - start) / n_gen)
+        pairs.append((times[0], times[1]))
+    return pairs
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0])
+    parser.add_argument("--sizes", type=int, nargs="+", default=[16, 32, 64, 128, 256], help="cells a side")
+    parser.add_argument("--representations", nargs="+", default=["integer"], help="representations to evaluate")
+    parser.add_argument("--pop-size", type=int, default=500)
+    parser.add_argument("--seconds", type=float, default=2.0, help="time spent on each evaluation figure")
+    parser.add_argument("--n-gen", type=int, default=500, help="generations of each timed run")
+    parser.add_argument("--repeats", type=int, default=3, help="pairs of timed runs")
+    arguments = parser.parse_args()
+
+    print(f"{platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
+    print(f"\nevaluations per second, population {arguments.pop_size}, p0 = 0.2")
+    print(f"{'cells a side':>12}  " + "  ".join(f"{name:>10}" for name in arguments.representations))
+    for size in arguments.sizes:
+        rates = [
+            evaluations_per_second(size, arguments.pop_size, name, arguments.seconds) for name in arguments.representations
+        ]
+        print(f"{size:>12}  " + "  ".join(f"{rate:>10,.0f}" for rate in rates), flush=True)
+
+    print(
+        f"\nprocessor seconds per generation, NSGA-II, 32 x 32, population {arguments.pop_size}, {arguments.n_gen} generations"
+    )
+    pairs = seconds_per_generation(32, arguments.pop_size, arguments.n_gen, arguments.repeats)
+    for ours, stock in pairs:
+        print(f"ours {ours:.4f}  stock {stock:.4f}  ratio {ours / stock:.2f}")
+    print(f"median ratio {np.median([ours / stock for ours, stock in pairs]):.2f}")
+
+
+if __name__ == "__main__":
+    main()

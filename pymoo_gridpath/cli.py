@@ -1,0 +1,307 @@
+"""The command line: plan on a map, list the shipped maps, describe a map file."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from pymoo_gridpath.errors import GridError, GridPathError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.maps import ShippedMap, load_map, shipped_maps
+from pymoo_gridpath.progress import Progress
+from pymoo_gridpath.representations import REPRESENTATIONS
+
+DEFAULT_MAP = "warehouse"
+
+EXIT_OK, EXIT_NO_PATH, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    Returns
+    -------
+    int
+        0; 1 if no legal path was found; 2 on bad input, with one line on standard error; 130 if Ctrl-C ended the search, with
+        what was found until then written.
+    """
+    arguments = _parser().parse_args(argv)
+    try:
+        return arguments.run(arguments)
+    except GridPathError as error:
+        print(f"pymoo-gridpath: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except KeyboardInterrupt:
+        print("pymoo-gridpath: interrupted", file=sys.stderr)
+        return EXIT_INTERRUPTED
+    except BrokenPipeError:
+        # The reader has gone; keep the interpreter from complaining when it flushes.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_OK
+
+
+# -- arguments ----------------------------------------------------------------------------------------------------------
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        """Say what was wrong in one line."""
+        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="pymoo-gridpath", description="Multi-objective path planning on occupancy grids.")
+    parser.add_argument("--version", action="version", version=f"%(prog)s {version('pymoo_gridpath')}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", title="commands")
+
+    plan = commands.add_parser("plan", help="plan the trade-off paths of a query", description=_plan.__doc__)
+    plan.set_defaults(run=_plan)
+    plan.add_argument("map", nargs="?", metavar="MAP", help=f"map file or name of a shipped map (default: {DEFAULT_MAP})")
+    plan.add_argument(
+        "--start", type=_cell, metavar="X,Y", help="start cell; x to the right, y up, from 0,0 at the bottom left"
+    )
+    plan.add_argument("--goal", type=_cell, metavar="X,Y", help="goal cell")
+    plan.add_argument("--radius", type=float, default=0.0, metavar="M", help="robot radius in metres (default: a point)")
+    _add_map_options(plan)
+    search = plan.add_argument_group("search")
+    search.add_argument("--algorithm", metavar="NAME", help="nsga2, spea2, moead, ... (default: nsga2; ga for one objective)")
+    search.add_argument(
+        "--representation", choices=REPRESENTATIONS, default="integer", help="how a path is coded (default: integer)"
+    )
+    search.add_argument(
+        "--objectives",
+        type=lambda text: text.split(","),
+        default=["length", "vulnerability"],
+        metavar="A,B",
+        help="some of length, vulnerability, turn (default: length,vulnerability)",
+    )
+    search.add_argument(
+        "--obstacles", choices=("penalty", "constraint", "limit"), help="how collisions are ruled out (default: penalty)"
+    )
+    search.add_argument("--potential-limit", type=float, metavar="P0", help="largest vulnerability, with --obstacles limit")
+    search.add_argument(
+        "--axis", choices=("auto", "x", "y"), default="auto", help="axis along which paths advance (default: auto)"
+    )
+    search.add_argument("--pop-size", type=_positive, default=200, metavar="N", help="population size (default: 200)")
+    search.add_argument("--generations", type=_positive, default=200, metavar="N", help="generations of a run (default: 200)")
+    search.add_argument(
+        "--runs", type=_positive, default=1, metavar="N", help="runs that are merged into one front (default: 1)"
+    )
+    search.add_argument("--seed", type=_natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
+    plan.add_argument(
+        "-o", "--output", type=Path, default=Path("gridpath-out"), metavar="DIR", help="where files go (default: gridpath-out)"
+    )
+    plan.add_argument("--units", choices=("cells", "m"), default="cells", help="axes of the map figure (default: cells)")
+
+    maps = commands.add_parser("maps", help="list the shipped maps", description=_maps.__doc__)
+    maps.set_defaults(run=_maps)
+
+    info = commands.add_parser("info", help="describe a map file", description=_info.__doc__)
+    info.set_defaults(run=_info)
+    info.add_argument("map", metavar="MAP", help="map file or name of a shipped map")
+    _add_map_options(info)
+    return parser
+
+
+def _add_map_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("reading the map")
+    group.add_argument("--resolution", type=float, metavar="M", help="metres a cell, for formats that do not say")
+    group.add_argument("--unknown", choices=("free", "occupied"), help="what unknown cells of ROS maps and images count as")
+    group.add_argument(
+        "--threshold", type=float, metavar="T", help="grey level below which an image's pixel is occupied, 0 to 1"
+    )
+    group.add_argument("--corner-cutting", action="store_true", default=None, help="allow diagonal steps past occupied cells")
+
+
+def _cell(text: str) -> tuple[int, int]:
+    try:
+        x, y = (int(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a cell, expected X,Y such as 12,40") from None
+    return x, y
+
+
+def _positive(text: str) -> int:
+    number = _natural(text)
+    if number == 0:
+        raise argparse.ArgumentTypeError("0 is not a positive whole number")
+    return number
+
+
+def _natural(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, zero or more")
+    return int(text)
+
+
+# -- commands -----------------------------------------------------------------------------------------------------------
+
+
+def _plan(arguments) -> int:
+    """Plan paths from a start to a goal, print the trade-off table, and write figures and files."""
+    # Imported late, so that `maps`, `info` and --help answer at once.
+    from pymoo_gridpath.algorithms import make_algorithm, minimize_runs
+    from pymoo_gridpath.convergence import ConvergenceRecorder
+    from pymoo_gridpath.decision import TradeOffSet
+    from pymoo_gridpath.plotting import save_figures
+    from pymoo_gridpath.problems import GridPathProblem
+
+    grid, shipped = _load(arguments.map or DEFAULT_MAP, arguments)
+    start, goal = _query(arguments, grid, shipped)
+    grid = _inflate(grid, arguments.radius, start, goal)
+    problem = GridPathProblem(
+        grid,
+        start,
+        goal,
+        representation=arguments.representation,
+        objectives=arguments.objectives,
+        obstacles=arguments.obstacles or "penalty",
+        potential_limit=arguments.potential_limit,
+        axis=arguments.axis,
+    )
+    name = arguments.algorithm or ("nsga2" if problem.n_obj > 1 else "ga")
+    algorithm = make_algorithm(name, problem, pop_size=arguments.pop_size)
+    _make_directory(arguments.output)
+
+    print(f"{grid.name}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
+    progress = Progress(arguments.runs, arguments.generations)
+    with _StopOnCtrlC() as stop, progress:
+
+        def observe(run, algorithm):
+            progress.update(run, algorithm)
+            return stop.requested
+
+        termination = ("n_gen", arguments.generations)
+        results = minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)
+
+    if stop.requested:
+        print("interrupted: what was found until then follows", file=sys.stderr)
+    settings = {"algorithm": {"name": name}, "robot_radius": arguments.radius, "interrupted": stop.requested}
+    runs = [result.algorithm for result in results if result.algorithm is not None]
+    trade_off = TradeOffSet.from_results(results, settings=settings)
+    print(trade_off.table())
+    files = [arguments.output / "paths.csv", arguments.output / "paths.json"]
+    trade_off.to_csv(files[0])
+    trade_off.to_json(files[1])
+    history = [run.callback for run in runs]
+    files += save_figures(trade_off, arguments.output, history=history, units=arguments.units)
+    print("written: " + ", ".join(str(file) for file in files))
+    if stop.requested:
+        return EXIT_INTERRUPTED
+    if not trade_off.feasible:
+        print(
+            "pymoo-gridpath: no legal path was found; a larger --pop-size, more --generations or --runs may find one",
+            file=sys.stderr,
+        )
+        return EXIT_NO_PATH
+    return EXIT_OK
+
+
+def _maps(arguments) -> int:
+    """List the shipped maps with the query that `plan` solves on each by default."""
+    for item in shipped_maps():
+        grid = load_map(item.name)
+        print(
+            f"{item.name:<12} {grid.width:>3} x {grid.height:<3} {item.title}; from {_text(item.start)} to {_text(item.goal)}"
+        )
+    return EXIT_OK
+
+
+def _info(arguments) -> int:
+    """Describe a map file as it is read."""
+    grid, shipped = _load(arguments.map, arguments)
+    occupied = grid.n_occupied
+    sizes = np.bincount(grid.regions.ravel())[1:]
+    x, y, yaw = grid.origin
+    rows = {
+        "name": grid.name,
+        "size": f"{grid.width} x {grid.height} cells, {grid.width * grid.resolution:g} x {grid.height * grid.resolution:g} m",
+        "resolution": f"{grid.resolution:g} m a cell",
+        "origin": f"x {x:g} m, y {y:g} m, yaw {yaw:g} rad, the corner of cell 0,0",
+        "occupied": f"{occupied} cells, {occupied / grid.occupied.size:.1%}",
+        "free regions": f"{len(sizes)}" + (f", the largest of {sizes.max()} cells" if len(sizes) else ""),
+        "corners": "may be cut" if grid.corner_cutting else "may not be cut",
+    }
+    if shipped:
+        rows["query"] = f"from {_text(shipped.start)} to {_text(shipped.goal)}, robot radius {shipped.radius:g} m"
+    for key, value in rows.items():
+        print(f"{key:<13} {value}")
+    return EXIT_OK
+
+
+# -- parts --------------------------------------------------------------------------------------------------------------
+
+
+def _load(name: str, arguments) -> tuple[OccupancyGrid, ShippedMap | None]:
+    """Return the grid of a file or of a shipped map, and what is known of the latter."""
+    options = {key: getattr(arguments, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")}
+    grid = load_map(name, **{key: value for key, value in options.items() if value is not None})
+    shipped = None if Path(name).is_file() else next((item for item in shipped_maps() if item.name == name), None)
+    return grid, shipped
+
+
+def _query(arguments, grid: OccupancyGrid, shipped: ShippedMap | None):
+    """Return start and goal, by default those of a shipped map, checked on the map as it was read."""
+    start = arguments.start or (shipped and shipped.start)
+    goal = arguments.goal or (shipped and shipped.goal)
+    if not start or not goal:
+        missing = " and ".join(f"--{role}" for role, cell in (("start", start), ("goal", goal)) if not cell)
+        raise GridError(
+            f"{missing} X,Y is needed for the map {grid.name!r}, a cell with x from 0 to {grid.width - 1} and y from 0 (bottom) to "
+            f"{grid.height - 1}"
+        )
+    return grid.check_query(start, goal)
+
+
+def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:
+    inflated = grid.inflate(radius)
+    try:
+        inflated.check_query(start, goal)
+    except GridError as error:
+        raise type(error)(f"with obstacles grown by the robot's radius of {radius:g} m, {error}") from None
+    return inflated
+
+
+def _make_directory(path: Path) -> None:
+    """Make the output directory before the search, so that no result is lost for want of it."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        writable = os.access(path, os.W_OK)
+    except OSError as error:
+        raise GridPathError(f"the output directory {path} cannot be made: {error.strerror or error}") from None
+    if not writable:
+        raise GridPathError(f"the output directory {path} cannot be written to")
+
+
+def _text(cell) -> str:
+    return f"{cell[0]},{cell[1]}"
+
+
+class _StopOnCtrlC:
+    """While open, the first Ctrl-C asks the search to stop after the generation under way; the second interrupts at once."""
+
+    def __init__(self):
+        self.requested = False
+
+    def __enter__(self):
+        self._before = signal.signal(signal.SIGINT, self._request)
+        return self
+
+    def __exit__(self, *exception):
+        signal.signal(signal.SIGINT, self._before)
+
+    def _request(self, number, frame):
+        if self.requested:
+            raise KeyboardInterrupt
+        self.requested = True
+
+
+if __name__ == "__main__":
+    sys.exit(main())

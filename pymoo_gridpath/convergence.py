@@ -1,0 +1,133 @@
+"""Recording how a run converges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import moocore
+import numpy as np
+from pymoo.core.callback import Callback
+
+from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.errors import GridPathError
+
+
+class ConvergenceRecorder(Callback):
+    """A pymoo callback that records the legal paths of every generation's population.
+
+    Pass it as ``minimize(..., callback=ConvergenceRecorder())`` and find it, filled, as ``result.algorithm.callback``, since
+    pymoo copies the algorithm. It can be copied and pickled.
+
+    Parameters
+    ----------
+    reference_point : sequence of float, optional
+        What `hypervolume` is measured against unless told otherwise.
+
+    Attributes
+    ----------
+    evaluations, generations : list of int
+        Number of evaluations and of the generation at each record.
+    n_feasible : list of int
+        Number of members that are legal paths.
+    best_length, best_vulnerability : list of float
+        The least among those, ``inf`` if there is none.
+    fronts : list of numpy.ndarray, shape (K, n_obj)
+        Their non-dominated plain objectives, each point once.
+    """
+
+    def __init__(self, reference_point: Sequence[float] | np.ndarray | None = None):
+        super().__init__()
+        self.reference_point = reference_point
+        self.evaluations: list[int] = []
+        self.generations: list[int] = []
+        self.n_feasible: list[int] = []
+        self.best_length: list[float] = []
+        self.best_vulnerability: list[float] = []
+        self.fronts: list[np.ndarray] = []
+        self._measures: PathMeasures | None = None
+
+    def __len__(self) -> int:
+        return len(self.evaluations)
+
+    def __getstate__(self) -> dict:
+        # The prepared potential is as large as the grid and soon made again.
+        return {**self.__dict__, "_measures": None}
+
+    # pymoo's CallbackCollection calls update() only, so this is the hook that works everywhere.
+    def _update(self, algorithm: Any) -> None:
+        problem = algorithm.problem
+        if self._measures is None:
+            self._measures = PathMeasures(problem)
+        paths = problem.decode(algorithm.pop.get("X"))
+        paths = paths[np.flatnonzero(self._measures.legal(paths))]
+        self.evaluations.append(int(algorithm.evaluator.n_eval))
+        self.generations.append(int(algorithm.n_iter))
+        self.n_feasible.append(len(paths))
+        self.best_length.append(float(np.min(paths.length, initial=np.inf)))
+        self.best_vulnerability.append(float(np.min(self._measures.vulnerability(paths), initial=np.inf)))
+        front = np.unique(np.asarray(problem.score(paths), dtype=float), axis=0)
+        front = front[moocore.is_nondominated(front)] if len(front) else front
+        # Late generations often agree; one array then serves them all.
+        same = bool(self.fronts) and np.array_equal(self.fronts[-1], front)
+        self.fronts.append(self.fronts[-1] if same else front)
+
+    @property
+    def first_feasible(self) -> int | None:
+        """Index of the first record with a legal path, None if there is none."""
+        found = np.flatnonzero(self.n_feasible)
+        return int(found[0]) if len(found) else None
+
+    def hypervolume(self, reference_point: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
+        """Return the hypervolume of each recorded front, shape (n_records,); 0 where there is none.
+
+        Parameters
+        ----------
+        reference_point : sequence of float, optional
+            By default the recorder's own, else `common_reference_point` of this recorder alone.
+
+        Raises
+        ------
+        GridPathError
+            If the point does not have one number for each objective, or nothing was recorded.
+        """
+        given = self.reference_point if reference_point is None else reference_point
+        point = np.asarray(common_reference_point([self]) if given is None else given, dtype=float)
+        if not len(self):
+            raise GridPathError("nothing was recorded, expected a recorder that went through a run")
+        if point.shape != (self.fronts[0].shape[1],):
+            raise GridPathError(f"reference_point is {given}, expected {self.fronts[0].shape[1]} numbers")
+        values, previous = np.zeros(len(self)), None
+        for k, front in enumerate(self.fronts):
+            if front is previous:
+                values[k] = values[k - 1]
+            elif len(front):
+                values[k] = moocore.hypervolume(front, ref=point)
+            previous = front
+        return values
+
+
+def common_reference_point(recorders: Sequence[ConvergenceRecorder], margin: float = 0.1) -> np.ndarray:
+    """Return a point beyond the final fronts of all recorders: their nadir plus a part of their range.
+
+    Parameters
+    ----------
+    recorders : sequence of ConvergenceRecorder
+    margin : float, default 0.1
+        Part of the range between the least and the largest value that is added; where that range is zero, 1 is added.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n_obj,)
+
+    Raises
+    ------
+    GridPathError
+        If no recorder ever saw a legal path.
+    """
+    fronts = [recorder.fronts[-1] for recorder in recorders if len(recorder) and len(recorder.fronts[-1])]
+    if not fronts:
+        raise GridPathError("no run ended with a legal path, expected at least one to choose a reference point by")
+    F = np.concatenate(fronts)
+    spread = np.ptp(F, axis=0)
+    return F.max(axis=0) + np.where(spread > 0, margin * spread, 1.0)

@@ -1,0 +1,159 @@
+"""Export of trade-off sets: text tables, CSV and JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import uuid
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from pymoo_gridpath.decision.provenance import plain
+from pymoo_gridpath.errors import GridPathError
+
+FORMAT = "pymoo_gridpath trade-off set"
+FORMAT_VERSION = 1
+
+_HEADERS = {
+    "length": "length",
+    "length_m": "length [m]",
+    "vulnerability": "vulnerability",
+    "turn": "turn [deg]",
+    "interfering_cells": "interfering",
+    "clearance": "clearance",
+}
+_FIELDS = ("cells", "points", "length", "vulnerability", "turn", "interfering_cells", "names")
+
+
+def write_whole(path: str | os.PathLike[str], data: bytes) -> Path:
+    """Write a file under a temporary name beside it and rename it, so that a crash leaves the old file or the new one.
+
+    Raises
+    ------
+    GridPathError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.part")
+    try:
+        with open(temporary, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    except OSError as error:
+        raise GridPathError(f"{path}: the file cannot be written ({error.strerror}), expected a writable place") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+    return path
+
+
+def csv_text(trade_off) -> str:
+    """Return one row a path: its number, its names joined by ``;``, and every measure in full precision."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["path", "names", *trade_off.measures])
+    columns = [values.tolist() for values in trade_off.measures.values()]
+    for k, row in enumerate(zip(*columns, strict=True)):
+        writer.writerow([k, ";".join(trade_off.names(k)), *row])
+    return text.getvalue()
+
+
+def json_text(trade_off) -> str:
+    """Return a trade-off set as strict JSON, one path a line."""
+    head = {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        **trade_off.meta,
+        "objectives": list(trade_off.objective_names),
+        "feasible": trade_off.feasible,
+    }
+    lines = [json.dumps(plain(head), allow_nan=False, indent=1).removesuffix("\n}"), ",\n", ' "paths": [\n']
+    records = [json.dumps(plain(record.as_dict()), allow_nan=False) for record in trade_off]
+    return "".join([*lines, ",\n".join(f"  {record}" for record in records), "\n ]\n}\n"])
+
+
+def load_json(path: str | os.PathLike[str]) -> dict:
+    """Read a file that `TradeOffSet.to_json` wrote.
+
+    Parameters
+    ----------
+    path : str or path-like
+
+    Returns
+    -------
+    dict
+        The file's content: ``map``, ``query``, ``settings``, ``seed``, ``versions``, ``objectives``, ``feasible`` and
+        ``paths``, a list of records. The ``genes`` of its records rebuild the set through `TradeOffSet.from_genes`.
+
+    Raises
+    ------
+    GridPathError
+        If the file cannot be read or is no trade-off set of this format.
+    """
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise GridPathError(f"{path}: the file cannot be read ({error.strerror}), expected a trade-off set") from None
+    except ValueError as error:
+        raise GridPathError(f"{path}: the file is not JSON ({error}), expected a trade-off set") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise GridPathError(f"{path}: the file holds no trade-off set, expected one with the format {FORMAT!r}")
+    if content.get("format_version") != FORMAT_VERSION:
+        raise GridPathError(f"{path}: format_version is {content.get('format_version')!r}, expected {FORMAT_VERSION}")
+    records = content.get("paths")
+    if not isinstance(records, list) or not records:
+        raise GridPathError(f"{path}: paths is missing or empty, expected a list of records")
+    for k, record in enumerate(records):
+        missing = [field for field in _FIELDS if not isinstance(record, dict) or field not in record]
+        if missing:
+            raise GridPathError(f"{path}: path {k} has no {missing[0]!r}, expected the fields {', '.join(_FIELDS)}")
+    return content
+
+
+def table_text(trade_off, max_rows: int | None = None) -> str:
+    """Return a table for terminals; see `TradeOffSet.table`."""
+    measures = trade_off.measures
+    rows = _rows_shown(trade_off, max_rows)
+    columns = [["path", *(str(k) for k in rows)]]
+    for name, values in measures.items():
+        columns.append([_HEADERS.get(name) or name, *_numbers(values[rows])])
+    marks = ["", *(", ".join(trade_off.names(k)) for k in rows)]
+    widths = [max(map(len, column)) for column in columns]
+    lines = [_heading(trade_off)]
+    for k, mark in enumerate(marks):
+        cells = (column[k].rjust(width) for column, width in zip(columns, widths, strict=True))
+        lines.append(f"{'  '.join(cells)}  {mark}".rstrip())
+    hidden = len(trade_off) - len(rows)
+    if hidden:
+        lines.append(f"... and {hidden} more")
+    return "\n".join(lines)
+
+
+def _heading(trade_off) -> str:
+    problem = trade_off.problem
+    count = f"{len(trade_off)} trade-off path{'' if len(trade_off) == 1 else 's'}"
+    heading = f"{count} from {problem.start} to {problem.goal} on {problem.grid.name!r}"
+    return heading if trade_off.feasible else f"{heading}\nNOT FEASIBLE: {trade_off.infeasibility}"
+
+
+def _rows_shown(trade_off, max_rows: int | None) -> Sequence[int]:
+    """Return the rows to show: the named paths, then the others spread evenly, in order."""
+    everything = list(range(len(trade_off)))
+    if max_rows is None or max_rows >= len(everything):
+        return everything
+    named = sorted({trade_off.index(name) for name in trade_off.named})
+    others = [k for k in everything if k not in named]
+    room = max(max_rows - len(named), 0)
+    spread = np.linspace(0, len(others) - 1, room).round().astype(int) if room else []
+    return sorted({*named, *(others[k] for k in spread)})
+
+
+def _numbers(values: np.ndarray) -> list[str]:
+    if values.dtype.kind in "iub" or (np.isfinite(values).all() and (values == values.round()).all()):
+        return [f"{value:.0f}" for value in values]
+    return [f"{value:.4g}" if value and abs(value) < 1e-3 else f"{value:.3f}" for value in values]

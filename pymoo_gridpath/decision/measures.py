@@ -1,0 +1,52 @@
+"""Measures of decoded paths, whether or not the problem minimises them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.objectives import Vulnerability
+
+
+def require_path_problem(problem) -> None:
+    """Raise GridPathError if a problem does not decode paths on a grid."""
+    if not all(hasattr(problem, name) for name in ("decode", "score", "grid", "representation", "objectives")):
+        raise GridPathError(f"the problem is {problem!r}, expected a path problem such as GridPathProblem")
+
+
+class PathMeasures:
+    """The vulnerability and the legality of paths of a problem.
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+        If it minimises a `Vulnerability`, its variance is the one used; else the default.
+
+    Raises
+    ------
+    GridPathError
+        If the problem does not decode paths.
+
+    Attributes
+    ----------
+    field : numpy.ndarray, shape (height, width)
+        The potential whose sum is the vulnerability.
+    """
+
+    def __init__(self, problem):
+        require_path_problem(problem)
+        given = [objective for objective in problem.objectives if isinstance(objective, Vulnerability)]
+        self.problem = problem
+        self._objective = given[0] if given else Vulnerability()
+        self.field = self._objective.field(problem.grid)
+        self._sums = problem.representation.prepare(self.field)
+
+    def vulnerability(self, paths) -> np.ndarray:
+        """Return the vulnerability of N paths, shape (N,)."""
+        return self._objective(paths, self._sums)
+
+    def legal(self, paths) -> np.ndarray:
+        """Return which of N paths cross no occupied cell and keep the potential limit if the problem has one, shape (N,)."""
+        legal = np.asarray(paths.interfering_cells) == 0
+        limit = getattr(self.problem, "potential_limit", None)
+        return legal if limit is None else legal & (self.vulnerability(paths) <= limit)

@@ -1,0 +1,117 @@
+"""What made a trade-off set: map, query, settings, seeds and versions, as plain data."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import platform
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+
+from pymoo_gridpath.grid import OccupancyGrid
+
+_PACKAGES = ("pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore")
+
+
+def grid_digest(grid: OccupancyGrid) -> str:
+    """Return the SHA-256 of the size and of the occupied cells: ``"{width} {height}\\n"``, then a byte 0 or 1 a cell.
+
+    Cells go row by row from the bottom, each from the left.
+    """
+    return hashlib.sha256(f"{grid.width} {grid.height}\n".encode() + grid.occupied.tobytes()).hexdigest()
+
+
+def describe_problem(problem) -> dict:
+    """Return ``map``, ``query`` and ``settings`` of a path problem as plain data."""
+    grid, representation = problem.grid, problem.representation
+    return {
+        "map": {
+            "name": grid.name,
+            "width": grid.width,
+            "height": grid.height,
+            "resolution": grid.resolution,
+            "origin": list(grid.origin),
+            "corner_cutting": grid.corner_cutting,
+            "occupied_cells": grid.n_occupied,
+            "sha256": grid_digest(grid),
+        },
+        "query": {"start": list(problem.start), "goal": list(problem.goal)},
+        "settings": {
+            "problem": type(problem).__name__,
+            "representation": representation.name,
+            "axis": getattr(getattr(representation, "frame", None), "axis", None),
+            "objectives": [{"name": f.name, **_scalars(f)} for f in problem.objectives],
+            "obstacles": getattr(problem, "obstacles", None),
+            "penalty": getattr(problem, "penalty", None),
+            "potential_limit": getattr(problem, "potential_limit", None),
+        },
+    }
+
+
+def describe_run(result) -> dict:
+    """Return the algorithm of a pymoo Result, its parameters, operators, generations, evaluations and seed.
+
+    What the Result does not tell is None.
+    """
+    algorithm = getattr(result, "algorithm", None)
+    iterations = getattr(algorithm, "n_iter", None)
+    mating = getattr(algorithm, "mating", None)
+    operators = {
+        "sampling": getattr(getattr(algorithm, "initialization", None), "sampling", None),
+        "selection": getattr(mating, "selection", None),
+        "crossover": getattr(mating, "crossover", None),
+        "mutation": getattr(mating, "mutation", None),
+        "repair": getattr(algorithm, "repair", None),
+        "survival": getattr(algorithm, "survival", None),
+    }
+    return {
+        "algorithm": None if algorithm is None else type(algorithm).__name__,
+        "pop_size": getattr(algorithm, "pop_size", None),
+        # pymoo counts the iteration that it would begin next.
+        "generations": None if iterations is None else iterations - 1,
+        "evaluations": getattr(getattr(algorithm, "evaluator", None), "n_eval", None),
+        "seed": getattr(algorithm, "seed", None),
+        "operators": {
+            role: {"name": type(operator).__name__, **_scalars(operator)}
+            for role, operator in operators.items()
+            if operator is not None
+        },
+    }
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that decide about the result."""
+    found = {"python": platform.python_version()}
+    for package in _PACKAGES:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            found[package] = "unknown"
+    return found
+
+
+def plain(value):
+    """Return a value as what strict JSON can hold: numbers that are not finite become None, unknown objects their text."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple | set | frozenset):
+        return [plain(item) for item in value]
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return str(value) if isinstance(value, Path) else repr(value)
+
+
+def _scalars(thing) -> dict:
+    """Return the public attributes of an object that are single numbers or words, pymoo's variables by their value."""
+    found = {}
+    for key, value in getattr(thing, "__dict__", {}).items():
+        value = getattr(value, "value", value)
+        if not key.startswith("_") and key != "name" and isinstance(value, bool | int | float | str | np.number):
+            found[key] = plain(value)
+    return found

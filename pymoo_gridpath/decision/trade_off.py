@@ -1,0 +1,375 @@
+"""The trade-off set: what a planner chooses from."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import moocore
+import numpy as np
+
+from pymoo_gridpath.decision import export, provenance
+from pymoo_gridpath.decision.knee import knee_point
+from pymoo_gridpath.decision.measures import PathMeasures, require_path_problem
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.fields import clearance
+
+#: What members of a trade-off set go by, in the order in which tables and figures show them.
+NAMES = ("shortest", "safest", "smoothest", "knee")
+
+_LEAST = {"shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
+
+
+@dataclass(frozen=True, eq=False)
+class PathRecord:
+    """One path of a trade-off set with its measures.
+
+    Attributes
+    ----------
+    index : int
+        Its place in the set.
+    names : tuple of str
+        Which of `NAMES` it goes by.
+    cells : numpy.ndarray of int, shape (n_cells, 2)
+        Visited cells (x, y), start and goal included.
+    points : numpy.ndarray of float, shape (n_cells, 2)
+        Their centres in metres in the map's frame.
+    length, length_m : float
+        Length in cells and in metres.
+    vulnerability : float
+        Sum of the obstacles' potential over the visited cells.
+    turn : float
+        Total turn in degrees.
+    interfering_cells : int
+        Number of occupied cells that it crosses; 0 for a legal path.
+    clearance : float
+        Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid.
+    objectives : dict of str to float
+        The plain objectives of the problem.
+    genes : numpy.ndarray, shape (n_var,)
+        The row of decision variables that codes it.
+    """
+
+    index: int
+    names: tuple[str, ...]
+    cells: np.ndarray = field(repr=False)
+    points: np.ndarray = field(repr=False)
+    length: float
+    length_m: float
+    vulnerability: float
+    turn: float
+    interfering_cells: int
+    clearance: float
+    objectives: dict[str, float]
+    genes: np.ndarray = field(repr=False)
+
+    def as_dict(self) -> dict:
+        """Return the record as a dict of its attributes, arrays as arrays."""
+        return dict(vars(self))
+
+
+class TradeOffSet:
+    """The paths worth choosing from: legal, mutually non-dominated in the plain objectives, one for each point.
+
+    Build it with `from_results` or `from_genes`. Penalties play no part in it. Paths that cross obstacles are dropped; only
+    if there is no other, those that cross the fewest are kept and `feasible` is False. Of paths with equal objectives the
+    smoothest is kept (then the one whose genes come first). Paths are in ascending order of the first objective.
+
+    Attributes
+    ----------
+    problem : GridPathProblem
+    X : numpy.ndarray, shape (N, n_var)
+        Genes.
+    F : numpy.ndarray of float, shape (N, n_obj)
+        Plain objectives.
+    paths : ColumnPaths
+        The decoded paths, or what else the representation decodes to.
+    measures : dict of str to numpy.ndarray, shape (N,)
+        ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
+        [cells] and every other objective of the problem by its name.
+    feasible : bool
+        Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
+    meta : dict
+        What made it, as plain data: ``map``, ``query``, ``settings``, ``seed``, ``versions``.
+
+    Notes
+    -----
+    ``trade_off["knee"]`` or ``trade_off.knee`` is a `PathRecord`; so is ``trade_off[0]``. `shortest`, `safest` and `smoothest`
+    have the least length, vulnerability and turn *of the set*, whatever its objectives; ties go to the path that is better
+    in the first objective that differs. `knee` is defined in `knee_point`, on the objectives of the problem.
+
+    References
+    ----------
+    Ahmed and Deb (2013), section 5.1: of paths on the same point of the front the smoothest is kept.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from pymoo_gridpath import GridPathProblem, OccupancyGrid
+    >>> grid = OccupancyGrid([[0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]], corner_cutting=True)
+    >>> problem = GridPathProblem(grid, (0, 0), (3, 3))
+    >>> trade_off = TradeOffSet.from_genes(problem, np.array([[1, 1, 1], [0, 0, 2], [3, 0, 0]]))
+    >>> len(trade_off), trade_off.feasible
+    (2, True)
+    >>> trade_off.safest.cells.tolist()
+    [[0, 0], [0, 1], [0, 2], [0, 3], [1, 3], [2, 3], [3, 3]]
+    >>> trade_off.safest.names
+    ('safest',)
+    """
+
+    def __init__(self, problem, X, meta: dict | None = None):
+        measures = PathMeasures(problem)
+        X = np.atleast_2d(np.asarray(X))
+        if X.size == 0:
+            raise GridPathError("there are no paths to choose from, expected at least one row of genes")
+        if X.dtype.kind == "f":
+            X = problem.representation.genes(X)
+        keep, self.feasible = _select(problem, measures, X)
+        self.problem = problem
+        self.X = X[keep]
+        self.paths = problem.decode(self.X)
+        self.F = np.asarray(problem.score(self.paths), dtype=float)
+        self.meta = provenance.plain(meta or {})
+        self._cells = [np.asarray(self.paths.cells(k)) for k in range(len(keep))]
+        self.measures = self._measure(measures)
+
+    @classmethod
+    def from_results(cls, results, settings: Mapping | None = None) -> TradeOffSet:
+        """Build the set from the Result of a run, or from the Results of several runs merged into one front.
+
+        Parameters
+        ----------
+        results : pymoo.core.result.Result or sequence of them
+            Of the same grid, query, representation and objectives. Candidates are each Result's optimum, or its final
+            population if it has none or no optimum of any run is legal.
+        settings : mapping, optional
+            What else to record under ``meta["settings"]``.
+
+        Raises
+        ------
+        GridPathError
+            If there is no Result, one holds no paths, or they belong to different problems.
+        """
+        runs = [results] if hasattr(results, "opt") else list(results)
+        if not runs:
+            raise GridPathError("there are no Results, expected one or more")
+        problem = _common_problem(runs)
+        X = np.concatenate([_genes(run, k, ("opt", "pop")[: 1 + (run.opt is None)]) for k, run in enumerate(runs)])
+        if not PathMeasures(problem).legal(problem.decode(X)).any():
+            X = np.concatenate([_genes(run, k, ("opt", "pop")) for k, run in enumerate(runs)])
+        return cls(problem, X, _meta(problem, settings, [provenance.describe_run(run) for run in runs]))
+
+    @classmethod
+    def from_genes(cls, problem, X, settings: Mapping | None = None) -> TradeOffSet:
+        """Build the set from rows of genes of any origin.
+
+        Parameters
+        ----------
+        problem : GridPathProblem
+        X : array_like, shape (N, n_var)
+        settings : mapping, optional
+            What else to record under ``meta["settings"]``.
+
+        Raises
+        ------
+        GridPathError
+            If there are no rows, or they do not fit the problem.
+        """
+        require_path_problem(problem)
+        return cls(problem, X, _meta(problem, settings, []))
+
+    def _measure(self, measures: PathMeasures) -> dict[str, np.ndarray]:
+        field = clearance(self.problem.grid)
+        length = np.asarray(self.paths.length, dtype=float)
+        found = {
+            "length": length,
+            "length_m": length * self.problem.grid.resolution,
+            "vulnerability": measures.vulnerability(self.paths),
+            "turn": np.asarray(self.paths.turn),
+            "interfering_cells": np.asarray(self.paths.interfering_cells),
+            "clearance": np.array([field[cells[:, 1], cells[:, 0]].min() for cells in self._cells]),
+        }
+        for name, values in zip(self.objective_names, self.F.T, strict=True):
+            found.setdefault(name, values)
+        return found
+
+    # -- members ------------------------------------------------------------------------------------------------------
+
+    @property
+    def objective_names(self) -> list[str]:
+        """Names of the columns of F."""
+        return [objective.name for objective in self.problem.objectives]
+
+    @functools.cached_property
+    def named(self) -> dict[str, int]:
+        """Index of the path that goes by each of `NAMES`."""
+        # Paths stand in the order of their objectives, so the first of equal ones is the better.
+        least = {name: int(np.argmin(self.measures[measure])) for name, measure in _LEAST.items()}
+        return {**least, "knee": knee_point(self.F)}
+
+    def index(self, name: str) -> int:
+        """Return the index of the path that goes by a name.
+
+        Raises
+        ------
+        GridPathError
+            If there is no such name.
+        """
+        if name not in self.named:
+            raise GridPathError(f"there is no path {name!r}, expected one of {', '.join(self.named)}")
+        return self.named[name]
+
+    def names(self, index: int) -> tuple[str, ...]:
+        """Return the names that the path at an index goes by, none for most."""
+        return tuple(name for name, k in self.named.items() if k == index)
+
+    @property
+    def shortest(self) -> PathRecord:
+        """The path of least length."""
+        return self["shortest"]
+
+    @property
+    def safest(self) -> PathRecord:
+        """The path of least vulnerability."""
+        return self["safest"]
+
+    @property
+    def smoothest(self) -> PathRecord:
+        """The path of least total turn."""
+        return self["smoothest"]
+
+    @property
+    def knee(self) -> PathRecord:
+        """The path at the knee of the front, see `knee_point`."""
+        return self["knee"]
+
+    def __len__(self) -> int:
+        return len(self.X)
+
+    def __iter__(self) -> Iterator[PathRecord]:
+        return (self[k] for k in range(len(self)))
+
+    def __getitem__(self, key: int | str) -> PathRecord:
+        """Return the path at an index or of a name."""
+        k = self.index(key) if isinstance(key, str) else range(len(self))[key]
+        value = {name: values[k].item() for name, values in self.measures.items()}
+        cells = self._cells[k]
+        return PathRecord(
+            index=k,
+            names=self.names(k),
+            cells=cells,
+            points=self.problem.grid.to_metres(cells),
+            length=value["length"],
+            length_m=value["length_m"],
+            vulnerability=value["vulnerability"],
+            turn=value["turn"],
+            interfering_cells=value["interfering_cells"],
+            clearance=value["clearance"],
+            objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
+            genes=self.X[k],
+        )
+
+    # -- words and files ----------------------------------------------------------------------------------------------
+
+    @property
+    def infeasibility(self) -> str:
+        """Why the set is not feasible, in words; empty if it is."""
+        if self.feasible:
+            return ""
+        crossed = self.measures["interfering_cells"].min()
+        if crossed == 0:
+            return f"no path keeps the potential limit of {self.problem.potential_limit:g}"
+        return f"no path is legal; these cross {crossed} occupied cell{'' if crossed == 1 else 's'}, the fewest found"
+
+    def table(self, max_rows: int | None = None) -> str:
+        """Return a plain text table, one line a path, with the names of those that have one.
+
+        Parameters
+        ----------
+        max_rows : int, optional
+            Show no more paths than this; the named ones are always shown.
+        """
+        return export.table_text(self, max_rows)
+
+    __str__ = table
+
+    def __repr__(self) -> str:
+        legal = "" if self.feasible else ", NOT feasible"
+        return f"<TradeOffSet: {len(self)} paths in {', '.join(self.objective_names)}{legal}>"
+
+    def to_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write one row a path with its number, its names (joined by ``;``) and every measure in full precision.
+
+        The file is written under a temporary name and renamed.
+        """
+        return export.write_whole(path, export.csv_text(self).encode())
+
+    def to_json(self, path: str | os.PathLike[str]) -> Path:
+        """Write all paths with their cells, points in metres and measures, and what made them, to one strict JSON file.
+
+        Numbers that are not finite become null. The file is written under a temporary name and renamed; `load_json`
+        reads it.
+        """
+        return export.write_whole(path, export.json_text(self).encode())
+
+
+def _select(problem, measures: PathMeasures, X: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Return the rows of X to keep, in order, and whether they are legal."""
+    paths = problem.decode(X)
+    legal = measures.legal(paths)
+    feasible = bool(legal.any())
+    if not feasible:
+        crossed = np.asarray(paths.interfering_cells)
+        legal = crossed == crossed.min()
+    rows = np.flatnonzero(legal)
+    paths = paths[rows]
+    F, turn = np.asarray(problem.score(paths), dtype=float), np.asarray(paths.turn)
+    front = np.flatnonzero(moocore.is_nondominated(F, keep_weakly=True))
+    order = sorted(front, key=lambda k: (*F[k].tolist(), turn[k], *np.ravel(X[rows[k]]).tolist()))
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = (F[order[1:]] != F[order[:-1]]).any(axis=1)
+    return rows[np.array(order)[first]], feasible
+
+
+def _genes(run, number: int, sources: Sequence[str]) -> np.ndarray:
+    populations = [getattr(run, source, None) for source in sources]
+    found = [np.atleast_2d(population.get("X")) for population in populations if population is not None and len(population)]
+    if not found:
+        raise GridPathError(
+            f"Result {number} holds no paths: its optimum and its population are empty, expected a finished run"
+        )
+    return np.concatenate(found)
+
+
+def _common_problem(runs: Sequence) -> Any:
+    """Return the problem that all runs solved."""
+    problems: list[Any] = [getattr(run, "problem", None) for run in runs]
+    for problem in problems:
+        require_path_problem(problem)
+    first = problems[0]
+    for k, problem in enumerate(problems):
+        if problem is first:
+            continue
+        mine, other = provenance.describe_problem(first), provenance.describe_problem(problem)
+        for part, keys in (("map", mine["map"]), ("query", mine["query"]), ("settings", _MUST_AGREE)):
+            differ = [key for key in keys if mine[part][key] != other[part][key]]
+            if differ:
+                raise GridPathError(f"Results 0 and {k} differ in the {part} ({differ[0]}), expected runs of one problem")
+    return first
+
+
+_MUST_AGREE = ("representation", "axis", "objectives", "potential_limit")
+
+
+def _meta(problem, settings: Mapping | None, runs: list[dict]) -> dict:
+    meta = provenance.describe_problem(problem)
+    meta["settings"]["runs"] = runs
+    meta["settings"].update(settings or {})
+    seeds = [run["seed"] for run in runs]
+    meta["seed"] = seeds[0] if len(seeds) == 1 else seeds or None
+    meta["versions"] = provenance.versions()
+    return meta

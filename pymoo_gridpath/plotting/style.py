@@ -1,0 +1,103 @@
+"""What all figures share: colours that colour-blind readers can tell apart, line styles, and the creation of figures."""
+
+from __future__ import annotations
+
+import contextlib
+import weakref
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class NameStyle:
+    """How a named path looks on maps and fronts."""
+
+    color: str
+    dashes: Any
+    marker: str
+
+
+# Colours of Okabe and Ito's palette; dashes and markers tell the paths apart in grey print too.
+NAME_STYLES = {
+    "shortest": NameStyle("#0072B2", "-", "s"),
+    "safest": NameStyle("#009E73", (0, (5, 1.6)), "D"),
+    "smoothest": NameStyle("#D55E00", (0, (1.2, 1.2)), "^"),
+    "knee": NameStyle("#CC3377", (0, (6, 1.5, 1.2, 1.5)), "o"),
+}
+OCCUPIED = "#3b3f45"
+POTENTIAL = ("#ffffff", "#f3d9a4")
+OTHERS = "#8a8f98"
+REFERENCE = "#5b5f66"
+WARNING = "#b00020"
+
+STYLE = {
+    "font.size": 9,
+    "axes.labelsize": 9,
+    "axes.titlesize": 9,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8,
+    "axes.linewidth": 0.7,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "xtick.major.size": 3,
+    "ytick.major.size": 3,
+    "legend.frameon": False,
+    "grid.color": "#d5d8dc",
+    "grid.linewidth": 0.5,
+    # Text stays text in files, which journals ask for.
+    "pdf.fonttype": 42,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "pymoo_gridpath",
+}
+
+
+# Axes that this package made, so that later calls draw into them in the same style.
+_OWN: weakref.WeakSet[Axes] = weakref.WeakSet()
+
+
+def style_of(names) -> NameStyle:
+    """Return the style of a path that goes by one or more names: that of the first."""
+    return NAME_STYLES[names[0]]
+
+
+def figure_style(ax: Axes | None):
+    """Return the context in which to draw: this package's style for Axes of its own, that of the caller for others."""
+    return mpl.rc_context(STYLE) if ax is None or ax in _OWN else contextlib.nullcontext()  # pyright: ignore[reportArgumentType]
+
+
+def new_axes(figsize: tuple[float, float], projection: str | None = None) -> Axes:
+    """Return the Axes of a new figure."""
+    from matplotlib import pyplot as plt
+
+    # Three-dimensional axes overflow the box that constrained layout sees.
+    figure = plt.figure(figsize=figsize, layout=None if projection else "constrained")
+    ax = figure.add_subplot(projection=projection)
+    _OWN.add(ax)
+    return ax
+
+
+def fix_ticks(ax: Axes) -> None:
+    """Give the ticks the sizes of now; they are made when drawn, out of the style's context."""
+    now = {str(key): value for key, value in mpl.rcParams.items()}
+    for axis in ("x", "y"):
+        size, width, length = (now[f"{axis}tick.{key}"] for key in ("labelsize", "major.width", "major.size"))
+        ax.tick_params(axis=axis, labelsize=size, width=width, length=length)
+
+
+def warn_infeasible(ax: Axes, trade_off) -> None:
+    """Say above the Axes that the paths are not legal, if so."""
+    if not trade_off.feasible:
+        words = trade_off.infeasibility.replace("; ", ";\n")
+        ax.set_title(f"Not feasible: {words}", color=WARNING)
+
+
+def by_path(trade_off, which) -> dict[int, list[str]]:
+    """Return the names to show by the index of the path that bears them, in the order of the names."""
+    groups: dict[int, list[str]] = {}
+    for name in [which] if isinstance(which, str) else which:
+        groups.setdefault(trade_off.index(name), []).append(name)
+    return groups

@@ -1,0 +1,55 @@
+"""A progress line for the terminal."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import numpy as np
+
+
+class Progress:
+    """One line on standard error that shows how far the runs have come; silent where that is no terminal.
+
+    Parameters
+    ----------
+    n_runs, n_gen : int
+        Number of runs, and of generations in each.
+    stream : file, optional
+        Standard error by default.
+    interval : float, default 0.1
+        Least seconds between two updates.
+    """
+
+    def __init__(self, n_runs: int, n_gen: int, stream=None, interval: float = 0.1):
+        self.n_runs = n_runs
+        self.n_gen = n_gen
+        self.stream = sys.stderr if stream is None else stream
+        self.interval = interval
+        self.shown = self.stream.isatty()
+        self._start = self._last = time.monotonic()
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, *exception) -> None:
+        if self.shown:
+            self.stream.write("\r\x1b[K")
+            self.stream.flush()
+
+    def update(self, run: int, algorithm) -> None:
+        """Show the state of run ``run`` (from 0) after a generation of its algorithm."""
+        now = time.monotonic()
+        if not self.shown or now - self._last < self.interval:
+            return
+        self._last = now
+        # A loop-wise algorithm reports more than once a generation; its termination knows how far it is.
+        share = min(max(algorithm.termination.perc, 1e-9), 1.0)
+        done = (run + share) / self.n_runs
+        left = (now - self._start) * (1 - done) / done
+        legal = int(np.count_nonzero(algorithm.pop.get("interfering_cells") == 0))
+        runs = f"run {run + 1}/{self.n_runs}, " if self.n_runs > 1 else ""
+        generation = min(round(share * self.n_gen), self.n_gen)
+        text = f"{runs}generation {generation}/{self.n_gen}, {legal} legal paths, about {left:.0f} s left"
+        self.stream.write(f"\r\x1b[K{text}")
+        self.stream.flush()

@@ -1,0 +1,527 @@
+"""From Results to a trade-off set, its members and its files."""
+
+import copy
+import csv
+import itertools
+import json
+import math
+import pickle
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import reference
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.core.callback import CallbackCollection
+from pymoo.core.population import Population
+from pymoo.core.result import Result
+from pymoo.optimize import minimize
+
+from pymoo_gridpath import GridPathProblem, OccupancyGrid
+from pymoo_gridpath.convergence import ConvergenceRecorder, common_reference_point
+from pymoo_gridpath.decision import NAMES, TradeOffSet, export, knee_point, load_json
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.objectives import Objective, Vulnerability
+from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament, paper_operators
+from pymoo_gridpath.problems import random_dense_grid
+
+MEASURES = ["length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance"]
+
+
+def make_problem(size=8, seed=5, **options):
+    return GridPathProblem(random_dense_grid(size, 0.25, seed), (0, 0), (size - 1, size - 1), **options)
+
+
+def draw(problem, n=3000, seed=0):
+    return np.random.default_rng(seed).integers(problem.xl, problem.xu + 1, (n, problem.n_var))
+
+
+def run(problem, seed=1, generations=25, **options):
+    algorithm = NSGA2(60, selection=SmoothnessTournament(), survival=RankAndSmoothness(), **paper_operators(problem))
+    return minimize(problem, algorithm, ("n_gen", generations), seed=seed, **options)
+
+
+def result_of(problem, X, opt=True):
+    """A Result as a pymoo run leaves it, of given genes."""
+    result = Result()
+    result.problem = problem
+    result.pop = Population.new(X=np.asarray(X))
+    result.opt = result.pop if opt else None
+    return result
+
+
+def dominates(a, b):
+    return all(x <= y for x, y in zip(a, b, strict=True)) and any(x < y for x, y in zip(a, b, strict=True))
+
+
+def front_by_definition(problem, X):
+    """Points of the legal front, each with the least turn of the paths on it."""
+    paths = problem.decode(np.asarray(X))
+    legal = [k for k in range(len(X)) if reference.interfering_cells(paths.cells(k).tolist(), problem.grid) == 0]
+    F = [tuple(row) for row in problem.score(paths).tolist()]
+    points = {F[k] for k in legal}
+    return {
+        point: min(reference.turn(paths.cells(k).tolist()) for k in legal if F[k] == point)
+        for point in points
+        if not any(dominates(other, point) for other in points)
+    }
+
+
+@pytest.fixture(scope="module")
+def results():
+    problem = make_problem(12, 3)
+    return [run(problem, seed, callback=ConvergenceRecorder()) for seed in (1, 2, 3)]
+
+
+@pytest.fixture(scope="module")
+def trade_off(results):
+    return TradeOffSet.from_results(results)
+
+
+# -- what is kept -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("objectives", [("length", "vulnerability"), ("length", "vulnerability", "turn"), ("length",)])
+def test_the_set_is_the_legal_front_with_the_smoothest_path_of_each_point(objectives):
+    problem = make_problem(objectives=objectives)
+    X = draw(problem)
+    trade_off = TradeOffSet.from_genes(problem, X)
+    expected = front_by_definition(problem, X)
+    assert trade_off.feasible
+    assert len(trade_off) == len(expected)
+    assert {tuple(f): turn for f, turn in zip(trade_off.F.tolist(), trade_off.measures["turn"], strict=True)} == expected
+    assert trade_off.F[:, 0].tolist() == sorted(trade_off.F[:, 0])
+
+
+def test_of_equal_points_the_smoothest_is_kept():
+    # On an empty grid, every path of seven diagonals and seven straight steps is equally long.
+    problem = GridPathProblem(OccupancyGrid(np.zeros((4, 8)), corner_cutting=True), (0, 0), (7, 3), "integer")
+    X = [[0, 1, 0, 1, 0, 1, 0], [0, 0, 0, 0, 1, 1, 1], [0, 1, 0, 1, 1, 0, 0]]
+    turns = [reference.turn(problem.decode(np.array([row])).cells(0).tolist()) for row in X]
+    assert len(set(turns)) == 3
+    trade_off = TradeOffSet.from_genes(problem, X)
+    assert trade_off.X.tolist() == [X[int(np.argmin(turns))]]
+
+
+def test_of_equally_smooth_equal_points_the_first_genes_are_kept_whatever_the_order():
+    problem = GridPathProblem(OccupancyGrid(np.zeros((4, 8)), corner_cutting=True), (0, 0), (7, 3), "integer")
+    X = np.array(list(itertools.product([0, 1], repeat=7)))
+    X = X[problem.score(problem.decode(X))[:, 0] == 4 + 3 * math.sqrt(2)]
+    turns = [reference.turn(problem.decode(X).cells(k).tolist()) for k in range(len(X))]
+    smoothest = [row for row, turn in zip(X.tolist(), turns, strict=True) if turn == min(turns)]
+    assert len(smoothest) > 1
+    for seed in range(4):
+        shuffled = np.random.default_rng(seed).permutation(X)
+        assert TradeOffSet.from_genes(problem, shuffled).X.tolist() == [min(smoothest)]
+
+
+def test_measures_agree_with_the_definitions(trade_off):
+    grid = trade_off.problem.grid
+    occupied = np.argwhere(grid.occupied)[:, ::-1]
+    for record in trade_off:
+        cells = record.cells.tolist()
+        assert tuple(cells[0]) == trade_off.problem.start and tuple(cells[-1]) == trade_off.problem.goal
+        assert reference.is_connected(cells)
+        assert record.length == pytest.approx(reference.length(cells), rel=1e-12)
+        assert record.vulnerability == pytest.approx(reference.vulnerability(cells, grid), abs=1e-7)
+        assert record.turn == reference.turn(cells)
+        assert record.interfering_cells == 0 == reference.interfering_cells(cells, grid)
+        assert record.clearance == pytest.approx(min(np.hypot(*(occupied - cell).T).min() for cell in cells))
+        assert record.objectives == {"length": record.length, "vulnerability": record.vulnerability}
+
+
+def test_metres_follow_resolution_and_origin():
+    grid = make_problem().grid.replace(resolution=0.25, origin=(-3.0, 2.0))
+    problem = GridPathProblem(grid, (0, 0), (7, 7))
+    record = TradeOffSet.from_genes(problem, draw(problem)).shortest
+    assert record.length_m == pytest.approx(0.25 * record.length)
+    assert record.points[0] == pytest.approx([-2.875, 2.125])
+    assert np.allclose(record.points, (record.cells + 0.5) * 0.25 + [-3.0, 2.0])
+
+
+@pytest.mark.parametrize("variance", [None, 2.0])
+def test_vulnerability_is_that_of_the_problem_or_of_the_default(variance):
+    given = ("length", "turn") if variance is None else ("turn", Vulnerability(variance))
+    problem = make_problem(objectives=given)
+    trade_off = TradeOffSet.from_genes(problem, draw(problem, 500))
+    for record in trade_off:
+        expected = reference.vulnerability(record.cells.tolist(), problem.grid, variance or 0.5)
+        assert record.vulnerability == pytest.approx(expected, abs=1e-7)
+
+
+def test_objectives_of_the_user_are_measures_too():
+    class Height(Objective):
+        name = "height"
+        label = "Sum of rows"
+
+        def field(self, grid):
+            return np.repeat(np.arange(grid.height)[:, None], grid.width, axis=1).astype(float)
+
+        def __call__(self, paths, sums):
+            return paths.total(sums)
+
+    problem = make_problem(objectives=("length", Height()))
+    trade_off = TradeOffSet.from_genes(problem, draw(problem))
+    assert list(trade_off.measures) == [*MEASURES, "height"]
+    assert [record.objectives["height"] for record in trade_off] == [record.cells[:, 1].sum() for record in trade_off]
+
+
+def test_real_genes_are_rounded_as_the_decoder_does():
+    problem = make_problem()
+    X = draw(problem, 500)
+    noisy = X + np.random.default_rng(1).uniform(-0.4, 0.4, X.shape)
+    assert np.array_equal(TradeOffSet.from_genes(problem, noisy).X, TradeOffSet.from_genes(problem, X).X)
+
+
+@pytest.mark.parametrize("representation", ["binary", "mixed", "absolute"])
+def test_every_representation_is_decoded(representation):
+    problem = make_problem(representation=representation)
+    trade_off = TradeOffSet.from_results(run(problem, generations=15))
+    assert trade_off.feasible
+    assert np.array_equal(problem.score(problem.decode(trade_off.X)), trade_off.F)
+
+
+# -- paths that are not legal -----------------------------------------------------------------------------------------
+
+
+def test_without_a_legal_path_the_least_interfering_are_kept_and_said_to_be_so():
+    problem = make_problem(20, 4)
+    X = draw(problem, 200)
+    trade_off = TradeOffSet.from_genes(problem, X)
+    crossed = [reference.interfering_cells(problem.decode(X).cells(k).tolist(), problem.grid) for k in range(len(X))]
+    assert min(crossed) > 0
+    assert not trade_off.feasible
+    assert set(trade_off.measures["interfering_cells"]) == {min(crossed)}
+    assert f"cross {min(crossed)} occupied" in trade_off.infeasibility
+    assert "NOT FEASIBLE" in trade_off.table() and "NOT feasible" in repr(trade_off)
+
+
+def test_a_run_without_a_feasible_member_falls_back_on_its_population():
+    problem = make_problem(20, 4, obstacles="constraint")
+    result = run(problem, generations=1)
+    assert result.opt is None
+    trade_off = TradeOffSet.from_results(result)
+    assert not trade_off.feasible and len(trade_off) >= 1
+
+
+def test_legal_paths_of_the_population_are_found_where_the_optimum_has_none():
+    problem = make_problem(penalty=1e-6)
+    X = draw(problem)
+    legal = problem.decode(X).interfering_cells == 0
+    result = result_of(problem, X)
+    result.opt = Population.new(X=X[~legal])
+    assert np.array_equal(TradeOffSet.from_results(result).X, TradeOffSet.from_genes(problem, X[legal]).X)
+
+
+def test_the_potential_limit_decides_too():
+    free = make_problem()
+    X = draw(free)
+    F = TradeOffSet.from_genes(free, X).F
+    limit = float(np.median(F[:, 1]))
+    limited = make_problem(obstacles="limit", potential_limit=limit)
+    assert TradeOffSet.from_genes(limited, X).F.tolist() == F[F[:, 1] <= limit].tolist()
+    hopeless = TradeOffSet.from_genes(make_problem(obstacles="limit", potential_limit=1e-6), X)
+    assert not hopeless.feasible
+    assert "potential limit" in hopeless.infeasibility
+
+
+# -- merging ----------------------------------------------------------------------------------------------------------
+
+
+def test_runs_are_merged_into_one_front(results, trade_off):
+    X = np.concatenate([result.opt.get("X") for result in results])
+    expected = front_by_definition(trade_off.problem, X)
+    assert {tuple(f) for f in trade_off.F.tolist()} == set(expected)
+    assert trade_off.meta["seed"] == [1, 2, 3]
+    assert [entry["seed"] for entry in trade_off.meta["settings"]["runs"]] == [1, 2, 3]
+
+
+def test_the_order_of_runs_does_not_matter(results, trade_off):
+    turned = TradeOffSet.from_results(results[::-1])
+    assert np.array_equal(turned.X, trade_off.X)
+
+
+def test_runs_of_pickled_copies_of_the_problem_merge(results, trade_off):
+    copies = [pickle.loads(pickle.dumps(result)) for result in results]
+    assert np.array_equal(TradeOffSet.from_results(copies).X, trade_off.X)
+
+
+@pytest.mark.parametrize(
+    ("other", "word"),
+    [
+        (make_problem(seed=6), "map"),
+        (make_problem(representation="binary"), "representation"),
+        (make_problem(objectives=("length", Vulnerability(2.0))), "objectives"),
+        (GridPathProblem(make_problem().grid, (7, 7), (0, 0)), "start"),
+    ],
+)
+def test_runs_of_different_problems_are_refused(other, word):
+    mine = make_problem()
+    with pytest.raises(GridPathError, match=word):
+        TradeOffSet.from_results([result_of(mine, draw(mine, 5)), result_of(other, draw(other, 5))])
+
+
+def test_an_empty_result_is_refused():
+    problem = make_problem()
+    with pytest.raises(GridPathError, match="Result 0 holds no paths"):
+        TradeOffSet.from_results(_empty(problem))
+    with pytest.raises(GridPathError, match="no Results"):
+        TradeOffSet.from_results([])
+    with pytest.raises(GridPathError, match="no paths"):
+        TradeOffSet.from_genes(problem, np.empty((0, problem.n_var)))
+    with pytest.raises(GridPathError, match="path problem"):
+        TradeOffSet.from_results(Result())
+
+
+def _empty(problem):
+    result = Result()
+    result.problem = problem
+    return result
+
+
+# -- members ----------------------------------------------------------------------------------------------------------
+
+
+def test_named_members_have_the_least_of_their_measure(trade_off):
+    assert trade_off.shortest.length == trade_off.measures["length"].min()
+    assert trade_off.safest.vulnerability == trade_off.measures["vulnerability"].min()
+    assert trade_off.smoothest.turn == trade_off.measures["turn"].min()
+    for name in NAMES:
+        assert name in trade_off[name].names
+        assert trade_off[name].index == trade_off.index(name)
+        assert np.array_equal(getattr(trade_off, name).cells, trade_off[name].cells)
+    with pytest.raises(GridPathError, match="fastest"):
+        trade_off["fastest"]
+
+
+def test_a_tie_goes_to_the_path_better_in_the_first_objective():
+    problem = make_problem(16, 2, objectives=("length", "vulnerability"))
+    trade_off = TradeOffSet.from_results([run(problem, seed, 40) for seed in (1, 2)])
+    smoothest = [record for record in trade_off if record.turn == trade_off.smoothest.turn]
+    assert trade_off.smoothest.length == min(record.length for record in smoothest)
+
+
+def test_indices_behave_like_those_of_a_list(trade_off):
+    assert trade_off[-1].index == len(trade_off) - 1
+    assert [record.index for record in trade_off] == list(range(len(trade_off)))
+    with pytest.raises(IndexError):
+        trade_off[len(trade_off)]
+    with pytest.raises(AttributeError):
+        trade_off[0].length = 3.0  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def knee_by_definition(F):
+    """Signed distance from the line through the extreme points of a front of two, after scaling."""
+    F = np.asarray(F, dtype=float)
+    scaled = (F - F.min(axis=0)) / (F.max(axis=0) - F.min(axis=0))
+    (ax, ay), (bx, by) = scaled[np.argmin(scaled[:, 0])], scaled[np.argmin(scaled[:, 1])]
+    away = [((bx - ax) * (ay - y) - (ax - x) * (by - ay)) / np.hypot(bx - ax, by - ay) for x, y in scaled]
+    return int(np.argmax(away))
+
+
+def test_the_knee_of_two_objectives_is_furthest_from_the_line_of_extremes():
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        x = np.sort(rng.random(12))
+        F = np.column_stack([100 * x, 3 * np.sort(rng.random(12))[::-1]])
+        assert knee_point(F) == knee_by_definition(F)
+
+
+@pytest.mark.parametrize(
+    ("F", "expected"),
+    [
+        ([[3, 7]], 0),
+        ([[1, 9], [2, 3]], 0),
+        ([[0, 4], [3, 3], [4, 0]], 0),  # bulges away: the first extreme
+        ([[0, 4], [1, 2], [2, 1], [4, 0]], 1),  # a tie
+        ([[0, 10, 5], [10, 0, 5], [1, 1, 5]], 2),  # one objective does not vary
+        ([[0, 1, 1], [1, 0, 1], [1, 1, 0], [0.4, 0.4, 0.4], [0.5, 0.5, 0.5]], 3),
+        ([[0, 1, 1], [1, 0, 1], [1, 1, 0], [0.1, 0.2, 0.3], [0.3, 0.2, 0.1]], 3),  # a tie but for rounding
+        ([[5], [5]], 0),
+    ],
+)
+def test_knees_made_by_hand(F, expected):
+    assert knee_point(np.array(F)) == expected
+
+
+def test_a_set_of_one_goes_by_all_names():
+    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5)), corner_cutting=True), (0, 0), (4, 4))
+    trade_off = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]])
+    assert trade_off[0].names == NAMES
+    assert trade_off[0].clearance == np.inf
+
+
+# -- provenance and files ---------------------------------------------------------------------------------------------
+
+
+def test_the_record_says_what_made_it(results):
+    trade_off = TradeOffSet.from_results(results[0], settings={"command": "plan"})
+    grid, meta = trade_off.problem.grid, trade_off.meta
+    assert meta["map"]["occupied_cells"] == grid.n_occupied
+    assert meta["query"] == {"start": [0, 0], "goal": [11, 11]}
+    assert meta["seed"] == 1
+    settings = meta["settings"]
+    assert settings["representation"] == "integer" and settings["command"] == "plan"
+    assert settings["objectives"][1] == {"name": "vulnerability", "variance": 0.5}
+    entry = settings["runs"][0]
+    assert (entry["algorithm"], entry["pop_size"], entry["generations"], entry["evaluations"]) == ("NSGA2", 60, 25, 1500)
+    assert entry["operators"]["crossover"]["name"] == "DiscreteSBX"
+    assert set(meta["versions"]) == {"python", "pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore"}
+
+
+def test_the_digest_tells_maps_apart():
+    grid = make_problem().grid
+    occupied = grid.occupied.copy()
+    occupied[3, 3] ^= True
+    digests = {TradeOffSet.from_genes(p, draw(p, 300)).meta["map"]["sha256"] for p in _problems(grid, occupied)}
+    assert len(digests) == 2
+
+
+def _problems(grid, occupied):
+    return [GridPathProblem(g, (0, 0), (7, 7)) for g in (grid, grid.replace(name="other"), grid.replace(occupied=occupied))]
+
+
+def strict(text):
+    def refuse(word):
+        raise AssertionError(f"{word} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_json_holds_every_path_and_what_made_it(trade_off, tmp_path):
+    content = strict(trade_off.to_json(tmp_path / "front.json").read_text())
+    assert {"map", "query", "settings", "seed", "versions", "feasible", "objectives", "paths"} <= set(content)
+    assert len(content["paths"]) == len(trade_off)
+    for record, stored in zip(trade_off, content["paths"], strict=True):
+        assert stored["cells"] == record.cells.tolist()
+        assert stored["points"] == record.points.tolist()
+        assert stored["names"] == list(record.names)
+        for name in MEASURES:
+            assert stored[name] == getattr(record, name)
+    assert load_json(tmp_path / "front.json") == content
+
+
+def test_json_has_null_where_a_number_is_not_finite(tmp_path):
+    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4))
+    path = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]]).to_json(tmp_path / "front.json")
+    assert strict(path.read_text())["paths"][0]["clearance"] is None
+
+
+def test_a_set_is_rebuilt_from_the_genes_of_its_json(trade_off, tmp_path):
+    content = load_json(trade_off.to_json(tmp_path / "front.json"))
+    again = TradeOffSet.from_genes(trade_off.problem, [record["genes"] for record in content["paths"]])
+    assert np.array_equal(again.F, trade_off.F)
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("{", "not JSON"),
+        ("[]", "no trade-off set"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 99}', "format_version"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": []}', "paths"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": [{"cells": []}]}', "points"),
+    ],
+)
+def test_a_file_that_is_no_set_is_refused(text, word, tmp_path):
+    path = tmp_path / "bad.json"
+    path.write_text(text)
+    with pytest.raises(GridPathError, match=word):
+        load_json(path)
+    with pytest.raises(GridPathError, match="cannot be read"):
+        load_json(tmp_path / "none.json")
+
+
+def test_csv_gives_every_measure_back(trade_off, tmp_path):
+    with open(trade_off.to_csv(tmp_path / "front.csv"), newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["path", "names", *MEASURES]
+    for name, values in trade_off.measures.items():
+        assert [float(row[name]) for row in rows] == values.tolist()
+    assert [tuple(filter(None, row["names"].split(";"))) for row in rows] == [record.names for record in trade_off]
+
+
+def test_a_crash_leaves_the_old_file_and_no_other(trade_off, tmp_path, monkeypatch):
+    path = tmp_path / "front.json"
+    path.write_text("old")
+
+    def crash(*args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(export.os, "replace", crash)
+    with pytest.raises(KeyboardInterrupt):
+        trade_off.to_json(path)
+    assert path.read_text() == "old"
+    assert [file.name for file in tmp_path.iterdir()] == ["front.json"]
+
+
+def test_a_place_that_cannot_be_written_is_an_error_in_words(trade_off, tmp_path):
+    with pytest.raises(GridPathError, match="cannot be written"):
+        trade_off.to_csv(tmp_path / "no" / "folder.csv")
+    with pytest.raises(GridPathError, match="cannot be written"):
+        trade_off.to_json(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_table_lines_up_and_shows_the_named_paths(trade_off):
+    lines = trade_off.table().splitlines()
+    assert len(lines) == 2 + len(trade_off) and str(trade_off) == trade_off.table()
+    ends = [[match.end() for match in re.finditer(r"\S+(?: \S+)*", line)][:7] for line in lines[1:]]
+    assert all(row == ends[0] for row in ends[1:])
+    short = trade_off.table(max_rows=0)
+    assert all(name in short for name in NAMES)
+    assert len(trade_off) == 1 or "more" in short or len(set(trade_off.named.values())) == len(trade_off)
+
+
+def test_sets_can_be_pickled_and_copied(trade_off):
+    for again in (pickle.loads(pickle.dumps(trade_off)), copy.deepcopy(trade_off)):
+        assert again.table() == trade_off.table()
+
+
+def test_deciding_does_not_import_pyplot():
+    code = "import sys, pymoo_gridpath.decision, pymoo_gridpath.convergence; sys.exit('matplotlib.pyplot' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+# -- convergence ------------------------------------------------------------------------------------------------------
+
+
+def test_the_recorder_sees_the_legal_paths_of_every_generation():
+    problem = make_problem(10, 3)
+    result = run(problem, generations=12, callback=ConvergenceRecorder(), save_history=True)
+    recorder = result.algorithm.callback
+    assert recorder.generations == list(range(1, 13))
+    assert recorder.evaluations == [60 * k for k in range(1, 13)]
+    for k, past in enumerate(result.history):
+        expected = front_by_definition(problem, past.pop.get("X"))
+        legal = past.pop.get("interfering_cells") == 0
+        assert recorder.n_feasible[k] == legal.sum()
+        assert {tuple(row) for row in recorder.fronts[k].tolist()} == set(expected)
+        assert recorder.best_length[k] == min((point[0] for point in expected), default=np.inf)
+        assert recorder.best_vulnerability[k] == min((point[1] for point in expected), default=np.inf)
+    first = next(k for k, n in enumerate(recorder.n_feasible) if n)
+    assert recorder.first_feasible == first
+
+
+def test_the_recorder_is_copied_pickled_and_collected(results):
+    recorder = results[0].algorithm.callback
+    for again in (pickle.loads(pickle.dumps(recorder)), copy.deepcopy(recorder)):
+        assert again.evaluations == recorder.evaluations
+        assert np.array_equal(again.hypervolume(), recorder.hypervolume())
+    problem = make_problem()
+    result = run(problem, generations=3, callback=CallbackCollection(ConvergenceRecorder()))
+    assert len(result.algorithm.callback.callbacks[0]) == 3
+
+
+def test_hypervolume_by_hand():
+    recorder = ConvergenceRecorder()
+    recorder.evaluations, recorder.generations, recorder.n_feasible = [1, 2, 3], [1, 2, 3], [0, 1, 2]
+    recorder.fronts = [np.empty((0, 2)), np.array([[2.0, 2.0]]), np.array([[1.0, 3.0], [2.0, 2.0]])]
+    assert recorder.hypervolume([4, 4]).tolist() == [0.0, 4.0, 5.0]
+    assert common_reference_point([recorder]).tolist() == pytest.approx([2.1, 3.1])
+    with pytest.raises(GridPathError, match="2 numbers"):
+        recorder.hypervolume([4, 4, 4])
+    with pytest.raises(GridPathError, match="no run"):
+        common_reference_point([ConvergenceRecorder()])
