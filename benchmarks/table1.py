@@ -1,8 +1,8 @@
 """Run Table 1 of Ahmed and Deb (2013) and print its columns beside the paper's.
 
 Each run draws its own random scenario of section 6 (path kept free, the rest occupied with probability p0) from its number, and
-searches it by the paper's modified NSGA-II with 200 individuals until the first legal path, or for 500 generations. The paper does not
-say how its scenarios were drawn, nor whether the runs of a row share one.
+searches it by the paper's modified NSGA-II with 200 individuals until the first legal path, or for 500 generations.
+The paper does not say how its scenarios were drawn, nor whether the runs of a row share one.
 
 Run with ``python benchmarks/table1.py``; ``--help`` lists the options. The full table takes about an hour on two cores.
 """

@@ -1,7 +1,7 @@
 """Measure evaluations per second, and a generation of this package's set-up beside pymoo's stock one.
 
-Run with ``python benchmarks/throughput.py``; ``--help`` lists the options. Every figure is the best of several repetitions, and the
-two set-ups take turns in one process, so that a noisy machine distorts their ratio little.
+Run with ``python benchmarks/throughput.py``; ``--help`` lists the options. Every figure is the best of several
+repetitions, and the two set-ups take turns in one process, so that a noisy machine distorts their ratio little.
 """
 
 from __future__ import annotations

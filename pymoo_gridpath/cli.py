@@ -254,8 +254,8 @@ def _query(arguments, grid: OccupancyGrid, shipped: ShippedMap | None):
     if not start or not goal:
         missing = " and ".join(f"--{role}" for role, cell in (("start", start), ("goal", goal)) if not cell)
         raise GridError(
-            f"{missing} X,Y is needed for the map {grid.name!r}, a cell with x from 0 to {grid.width - 1} and y from 0 (bottom) to "
-            f"{grid.height - 1}"
+            f"the map {grid.name!r} needs {missing}, expected a cell X,Y with x from 0 to {grid.width - 1} and y from 0 "
+            f"(bottom) to {grid.height - 1}"
         )
     return grid.check_query(start, goal)
 

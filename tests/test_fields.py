@@ -7,6 +7,7 @@ import pytest
 import reference
 from hypothesis import given
 from hypothesis import strategies as st
+
 from pymoo_gridpath.errors import GridError
 from pymoo_gridpath.fields import QUANTUM, clearance, obstacle_potential
 from pymoo_gridpath.grid import OccupancyGrid

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from pymoo_gridpath.errors import GridError, UnreachableError
 from pymoo_gridpath.grid import OccupancyGrid
 
@@ -71,7 +72,9 @@ def test_cells_are_checked_and_the_nearest_free_cell_is_named():
     grid = OccupancyGrid([[1, 1, 0], [1, 1, 1], [0, 1, 1]], name="demo")
     assert grid.check_cell((2, 0)) == (2, 0)
     assert grid.check_cell(np.array([2, 0])) == (2, 0)
-    with pytest.raises(GridError, match=r"start \(0, 1\) lies on an obstacle of the grid 'demo'; the nearest free cell is \(0, 2\)"):
+    with pytest.raises(
+        GridError, match=r"start \(0, 1\) lies on an obstacle of the grid 'demo'; the nearest free cell is \(0, 2\)"
+    ):
         grid.check_cell((0, 1), "start")
     with pytest.raises(GridError, match=r"goal \(9, -1\) lies outside .* 3 x 3 cells .* nearest free cell is \(2, 0\)"):
         grid.check_cell((9, -1), "goal")

@@ -1,0 +1,26 @@
+"""pymoo's algorithms made ready for grids: smoothness tie-breaks, what each can do, and a factory."""
+
+from __future__ import annotations
+
+from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability, capability_table
+from pymoo_gridpath.algorithms.factory import make_algorithm, reference_directions
+from pymoo_gridpath.algorithms.moead import SmoothMOEAD
+from pymoo_gridpath.algorithms.paper import Setup, ahmed_deb_2013
+from pymoo_gridpath.algorithms.runs import minimize_runs
+from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
+from pymoo_gridpath.algorithms.termination import FirstLegalPath
+
+__all__ = [
+    "CAPABILITIES",
+    "Capability",
+    "FirstLegalPath",
+    "Setup",
+    "SmoothMOEAD",
+    "StrengthAndSmoothness",
+    "StrengthTournament",
+    "ahmed_deb_2013",
+    "capability_table",
+    "make_algorithm",
+    "minimize_runs",
+    "reference_directions",
+]

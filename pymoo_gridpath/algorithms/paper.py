@@ -45,8 +45,9 @@ def ahmed_deb_2013(
     `pymoo_gridpath.algorithms.minimize_runs`.
 
     Two objectives: the modified NSGA-II, obstacles as penalty, crossover rate 0.9 with index 10, mutation rate 1 / n with
-    index 20 (sections 5.1 and 5.2). Three objectives: the same with the original NSGA-II, where crowding alone decides within a rank
-    (section 5.6). One objective: a genetic algorithm with obstacles as constraint and crossover index 2 (section 5.5).
+    index 20 (sections 5.1 and 5.2). Three objectives: the same with the original NSGA-II, where crowding alone decides
+    within a rank (section 5.6). One objective: a genetic algorithm with obstacles as constraint and crossover index 2
+    (section 5.5).
 
     Parameters
     ----------

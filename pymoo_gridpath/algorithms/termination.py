@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from pymoo.core.termination import Termination
 from pymoo.termination.max_gen import MaximumGenerationTermination
 
@@ -28,6 +30,6 @@ class FirstLegalPath(Termination):
         self.budget = MaximumGenerationTermination(n_max_gen)
         self.found = False
 
-    def _update(self, algorithm):
+    def _update(self, algorithm: Any) -> float:
         self.found = bool((algorithm.pop.get("interfering_cells") == 0).any())
         return 1.0 if self.found else self.budget.update(algorithm)

@@ -18,9 +18,9 @@ ROUNDS_PER_SELECTION = 4
 class ArrayMating(Mating):
     """Selection, crossover, mutation, repair and duplicate elimination on one array of genes.
 
-    Pass it as ``mating=`` to any algorithm derived from pymoo's ``GeneticAlgorithm``. Operators are called by the hook that every
-    pymoo operator has (``_do``, on arrays), and their probabilities mean what they mean in pymoo. Children equal to a member of the
-    population or to one another are always left out; mating goes on until there are enough.
+    Pass it as ``mating=`` to any algorithm derived from pymoo's ``GeneticAlgorithm``. Operators are called by the hook
+    that every pymoo operator has (``_do``, on arrays), and their probabilities mean what they mean in pymoo. Children
+    equal to a member of the population or to one another are always left out; mating goes on until there are enough.
 
     Parameters
     ----------

@@ -51,8 +51,9 @@ def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:
     Returns
     -------
     numpy.ndarray, shape (N,)
-        The mean over objectives of the distance between a point's two neighbours over the range of its front; ``inf`` at the ends
-        of a front, and in fronts of one or two points. An objective that is constant over a front counts as 0 there.
+        The mean over objectives of the distance between a point's two neighbours over the range of its front; ``inf``
+        at the ends of a front, and in fronts of one or two points. An objective that is constant over a front counts
+        as 0 there.
 
     References
     ----------

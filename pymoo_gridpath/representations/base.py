@@ -35,7 +35,7 @@ class Representation(ABC):
     xu: np.ndarray
 
     @abstractmethod
-    def decode(self, X: np.ndarray):
+    def decode(self, X: np.ndarray) -> ColumnPaths:
         """Return the batch of paths that the rows of X code; draws no random number."""
 
     @abstractmethod

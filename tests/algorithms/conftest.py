@@ -24,7 +24,7 @@ class PrefersShort(AutomatedDM):
 @pytest.fixture(scope="session")
 def make_problem():
     """Return a maker of problems on an 8 x 8 grid; its front for two objectives has 12 members."""
-    grids = {p0: random_dense_grid(8, p0, seed) for p0, seed in ((0.1, 11), (0.3, 3))}
+    grids = {p0: random_dense_grid(8, p0, seed) for p0, seed in ((0.0, 0), (0.1, 11), (0.3, 3))}
 
     def make(n_obj=2, obstacles="penalty", representation="integer", p0=0.1):
         return GridPathProblem(grids[p0], (0, 0), (7, 7), representation, OBJECTIVES[:n_obj], obstacles)

@@ -64,6 +64,7 @@ def test_row(row, n_obj, obstacles, make_problem, arguments, fingerprint):
         return
     need_package(row)
     algorithm = make_algorithm(row.name, problem, POP_SIZE, **kwargs)
+    problem.evaluate(problem.xl[None])  # fills what the problem computes once
     before = fingerprint(algorithm), fingerprint(problem)
     result = solve(problem, algorithm)
     assert (fingerprint(algorithm), fingerprint(problem)) == before
@@ -81,7 +82,7 @@ def test_row(row, n_obj, obstacles, make_problem, arguments, fingerprint):
 def check_genes(problem, pop):
     X = pop.get("X")
     assert X.dtype.kind in "ib"
-    assert (X >= problem.xl).all() and (X <= problem.xu).all()
+    assert np.array_equal(np.clip(X, problem.xl, problem.xu), X)
 
 
 def check_reproducible(row, problem, kwargs, result):
@@ -168,7 +169,7 @@ def test_pinsga2_cannot_fit_three_objectives(make_problem, arguments):
 def test_swarms_leave_the_whole_numbers(name, make_problem):
     problem = make_problem()
     X = solve(problem, build(CAPABILITIES[name], problem, POP_SIZE)).pop.get("X")
-    assert (X != np.rint(X)).any()
+    assert not np.array_equal(np.rint(X), X)
 
 
 def test_cmopso_is_not_reproducible(make_problem):
@@ -242,7 +243,8 @@ def test_a_missing_package_is_named(row, make_problem, monkeypatch):
 def test_smoothness_where_the_table_says(row, make_problem, arguments):
     need_package(row)
     n_obj = least_objectives(row)
-    problem = make_problem(n_obj)
+    # On an empty grid vulnerability is nought, so that paths of equal length tie.
+    problem = make_problem(n_obj, p0=0.0)
     kwargs = arguments(row, n_obj)
     if not row.smoothness:
         with pytest.raises(CapabilityError, match=f"{row.name} has no smoothness tie-break"):
@@ -252,7 +254,7 @@ def test_smoothness_where_the_table_says(row, make_problem, arguments):
         solve(problem, make_algorithm(row.name, problem, POP_SIZE, smoothness=smoothness, **kwargs), n_gen=15)
         for smoothness in (True, False)
     )
-    assert not np.array_equal(smooth.pop.get("X"), plain.pop.get("X"))
+    assert smooth.pop.get("turn").mean() < plain.pop.get("turn").mean()
 
 
 def test_the_table_holds_all_of_pymoos_multi_objective_algorithms():

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 from pymoo.algorithms.moo.moead import ParallelMOEAD
 from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.core.mating import Mating
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 from pymoo.optimize import minimize
 
-from pymoo_gridpath.algorithms import CAPABILITIES, SmoothMOEAD, StrengthAndSmoothness, make_algorithm, reference_directions
+from pymoo_gridpath.algorithms import CAPABILITIES, StrengthAndSmoothness, make_algorithm, reference_directions
 from pymoo_gridpath.algorithms._arguments import parameters
 from pymoo_gridpath.algorithms.factory import _class_of
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.operators import DiscreteSBX, RankAndSmoothness, SmoothnessTournament
+from pymoo_gridpath.operators import ArrayMating, DiscreteSBX, RankAndSmoothness, SmoothnessTournament
 
 
 @pytest.mark.parametrize(
@@ -144,7 +145,7 @@ def test_every_accepted_argument_is_taken(name, make_problem, arguments):
     for key, default in parameters(_class_of(row), name).items():
         if key in ("pop_size", "smoothness", *kwargs) or isinstance(default, type):
             continue
-        value = {"ref_dirs": np.eye(n_obj), "crossover": model.mating.crossover}.get(key, default)
+        value = {"ref_dirs": np.eye(n_obj), "crossover": getattr(model.mating, "crossover", None)}.get(key, default)
         make_algorithm(name, problem, 20, **{key: value}, **kwargs)
 
 
@@ -154,6 +155,14 @@ def test_termination_and_seed_reach_the_run(make_problem):
     assert result.algorithm.evaluator.n_eval == 60
     again = minimize(make_problem(), make_algorithm("SPEA2", make_problem(), 20), ("n_gen", 3), seed=4)
     assert np.array_equal(result.pop.get("X"), again.pop.get("X"))
+
+
+def test_own_operators_get_pymoos_mating(make_problem):
+    problem = make_problem()
+    crossover = DiscreteSBX(5.0)
+    assert isinstance(make_algorithm("NSGA2", problem).mating, ArrayMating)
+    given = make_algorithm("NSGA2", problem, crossover=crossover)
+    assert type(given.mating) is Mating and given.mating.crossover is crossover
 
 
 def test_differential_evolution_keeps_its_settings(make_problem):

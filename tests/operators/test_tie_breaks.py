@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymoo.core.population import Population
 from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
+
 from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament
 from pymoo_gridpath.operators.selection import by_rank_turn_crowding
 from pymoo_gridpath.operators.survival import crowding_distances
@@ -53,7 +54,7 @@ def test_tournament_follows_rank_then_turn_then_crowding(seed, infeasible):
     winners = by_rank_turn_crowding(pop, P, random_state=rng)[:, 0]
     for (a, b), winner in zip(P, winners, strict=True):
         verdict = better(pop[a], pop[b])
-        assert winner == (a if verdict < 0 else b) or verdict == 0 and winner in (a, b)
+        assert winner == (a if verdict < 0 else b) or (verdict == 0 and winner in (a, b))
 
 
 def test_draws_are_fair():

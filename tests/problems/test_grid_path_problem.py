@@ -8,6 +8,7 @@ import pytest
 import reference
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
+
 from pymoo_gridpath.errors import GridPathError, UnreachableError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Length, Objective, Vulnerability
@@ -58,7 +59,7 @@ def test_constraint_is_the_number_of_interfering_cells():
     X = genes(problem)
     F, G = problem.evaluate(X)
     expected = plain(problem, X)
-    assert F == pytest.approx(expected[:, :2], abs=1e-6) and G[:, 0] == pytest.approx(expected[:, 3])
+    assert pytest.approx(expected[:, :2], abs=1e-6) == F and G[:, 0] == pytest.approx(expected[:, 3])
 
 
 def test_limit_is_the_papers_equation_1():
@@ -67,7 +68,7 @@ def test_limit_is_the_papers_equation_1():
     F, G = problem.evaluate(X)
     expected = plain(problem, X)
     potential = expected[:, 1] + GRID.occupied.size * expected[:, 3]
-    assert F == pytest.approx(np.column_stack([expected[:, 0], potential]), abs=1e-6)
+    assert pytest.approx(np.column_stack([expected[:, 0], potential]), abs=1e-6) == F
     assert G[:, 0] == pytest.approx(potential - 5.0, abs=1e-6)
     assert (expected[G[:, 0] <= 0, 3] == 0).all()
 
@@ -138,13 +139,13 @@ def test_copies_evaluate_the_same(clone):
     assert all(np.array_equal(a, b) for a, b in zip(problem.evaluate(X), clone(problem).evaluate(X), strict=True))
 
 
-def test_evaluation_leaves_its_arguments_and_random_state_alone():
+def test_evaluation_leaves_its_arguments_and_the_global_random_state_alone():
     problem = GridPathProblem(GRID, START, GOAL)
     X = genes(problem)
-    before, state = X.copy(), np.random.get_state()[1].copy()
+    before, state = X.copy(), np.random.get_state()[1].copy()  # noqa: NPY002
     first = problem.evaluate(X)
     assert np.array_equal(X, before) and np.array_equal(problem.evaluate(X), first)
-    assert np.array_equal(np.random.get_state()[1], state)
+    assert np.array_equal(np.random.get_state()[1], state)  # noqa: NPY002
 
 
 def test_ties_carry_no_float_noise():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.representations import make_representation
 
@@ -27,7 +28,7 @@ def genes(name, path):
     if name == "binary":
         return np.array([[c == "1" for c in BINARY[path] if c in "01"]])
     if name == "mixed":
-        return np.array([sum(MIXED[path], [])])
+        return np.array([MIXED[path][0] + MIXED[path][1]])
     return np.array([[leave for _, leave in PATHS[path][:-1]]])
 
 

@@ -5,6 +5,7 @@ import pytest
 import reference
 from hypothesis import given
 from hypothesis import strategies as st
+
 from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Vulnerability

@@ -1,0 +1,287 @@
+"""Any of pymoo's multi-objective algorithms by name, ready for a path problem, or a sentence that says why not."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import importlib.util
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pymoo.algorithms.moo.nsde import VariantDE
+from pymoo.core.algorithm import Algorithm
+from pymoo.util.reference_direction import (
+    UniformReferenceDirectionFactory,
+    get_number_of_uniform_points,
+    get_partition_closest_to_points,
+)
+
+from pymoo_gridpath.algorithms import _arguments
+from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
+from pymoo_gridpath.algorithms.differential import WholeNumberDE
+from pymoo_gridpath.algorithms.moead import SmoothMOEAD
+from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
+from pymoo_gridpath.errors import CapabilityError
+from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, paper_operators
+
+_OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
+_PACKAGES = {"scikit-learn": "sklearn"}
+
+
+def make_algorithm(
+    name: str,
+    problem,
+    pop_size: int = 100,
+    smoothness: bool | None = None,
+    operators: Mapping[str, Any] | None = None,
+    **kwargs,
+) -> Algorithm:
+    """Return an algorithm with operators that fit a path problem.
+
+    Parameters
+    ----------
+    name : str
+        An algorithm of the capability table; case and punctuation do not matter: "NSGA-II", "nsga2", "MOEA/D".
+    problem : GridPathProblem
+        What it is to solve.
+    pop_size : int, default 100
+        Population size. Algorithms whose population is the set of reference directions (MOEAD, ParallelMOEAD, CTAEA) have
+        at most as many, see `reference_directions`; RNSGA3 at most as many as divide evenly among its reference points.
+    smoothness : bool, optional
+        Whether ties are broken by total turn. By default they are where the algorithm can, unless turn is an objective of
+        the problem or ``selection`` or ``survival`` is given.
+    operators : mapping, optional
+        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates`` to use in place of the paper's, see
+        `paper_operators`; each may be left out.
+    **kwargs
+        Other arguments of the algorithm: what its pymoo class takes and heeds, such as ``ref_dirs``, ``n_neighbors``,
+        ``termination`` or ``seed``.
+
+    Returns
+    -------
+    pymoo.core.algorithm.Algorithm
+        A new one that shares no operator, survival or output with any other, except for those given.
+
+    Raises
+    ------
+    CapabilityError
+        If there is no such algorithm; if it cannot solve this problem (number of objectives, constraints, discrete genes); if
+        it has no smoothness tie-break but one is asked for; if an argument is unknown, or needed and missing; or if a package
+        it needs is not installed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from pymoo_gridpath import GridPathProblem, OccupancyGrid
+    >>> problem = GridPathProblem(OccupancyGrid(np.zeros((8, 8))), (0, 0), (7, 7), obstacles="constraint")
+    >>> type(make_algorithm("MOEA/D", problem, pop_size=20)).__name__
+    'SmoothMOEAD'
+    >>> make_algorithm("D-NSGA-II", problem)
+    Traceback (most recent call last):
+    ...
+    pymoo_gridpath.errors.CapabilityError: DNSGA2 cannot solve problems with constraints; use obstacles='penalty'
+    """
+    row = find_capability(name)
+    refuse_problem(row, problem)
+    return build(row, problem, pop_size, smoothness, operators, **kwargs)
+
+
+def find_capability(name: str) -> Capability:
+    """Return the row of the capability table that a name means.
+
+    Raises
+    ------
+    CapabilityError
+        If there is none, with the nearest.
+    """
+    rows = {_key(row.name): row for row in CAPABILITIES.values()}
+    key = _key(name)
+    if key not in rows:
+        near = difflib.get_close_matches(key, rows, n=1, cutoff=0.4)
+        hint = f"did you mean {rows[near[0]].name!r}?" if near else f"expected one of {', '.join(CAPABILITIES)}"
+        raise CapabilityError(f"there is no algorithm {name!r}; {hint}")
+    return rows[key]
+
+
+def _key(name: str) -> str:
+    key = re.sub(r"[^a-z0-9]", "", name.lower())
+    return re.sub(r"ii$", "2", re.sub(r"iii$", "3", key))
+
+
+def refuse_problem(row: Capability, problem) -> None:
+    """Raise a CapabilityError that says what an algorithm cannot do for a problem, if anything."""
+    if row.unfit:
+        raise CapabilityError(f"{row.name} {row.unfit}")
+    if problem.n_obj < row.min_objectives:
+        raise CapabilityError(
+            f"{row.name} needs at least {row.min_objectives} objectives, the problem has {problem.n_obj}; use 'GA' for one"
+        )
+    if row.max_objectives is not None and problem.n_obj > row.max_objectives:
+        raise CapabilityError(f"{row.name} takes at most {row.max_objectives} objectives, the problem has {problem.n_obj}")
+    if problem.has_constraints() and not row.constraints:
+        raise CapabilityError(f"{row.name} cannot solve problems with constraints; use obstacles='penalty'")
+
+
+def build(
+    row: Capability,
+    problem,
+    pop_size: int = 100,
+    smoothness: bool | None = None,
+    operators: Mapping[str, Any] | None = None,
+    **kwargs,
+) -> Algorithm:
+    """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
+    if pop_size < 1:
+        raise CapabilityError(f"pop_size is {pop_size}, expected a positive number of individuals")
+    cls = _class_of(row)
+    accepted = _arguments.parameters(cls, row.name)
+    # These two classes need not be told: smoothness is an argument of this function.
+    accepted.pop("smoothness", None)
+    given = dict(kwargs)
+    if operators is not None:
+        _arguments.check("operators", operators, dict.fromkeys(_OPERATORS))
+        given.update(operators)
+    _arguments.check(row.name, given, accepted)
+    settings = _arguments.fresh_defaults(accepted)
+    settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
+    settings |= _smoothness(row, problem, smoothness, given)
+    settings |= given | _references(row, problem, pop_size, given)
+    if "pop_size" in accepted:
+        settings["pop_size"] = pop_size
+    if row.name in ("NSGA2", "SPEA2") and not given.keys() & set(_OPERATORS):
+        # The same mating twice as fast; operators that a caller gives may need pymoo's.
+        settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
+    termination = settings.pop("termination", None)
+    algorithm = cls(**settings)
+    if termination is not None:
+        # Several constructors overwrite the one they are given.
+        algorithm.termination = termination
+    if isinstance(algorithm.__dict__.get("mating"), VariantDE):
+        algorithm.mating = _whole_number_mating(algorithm)
+    return algorithm
+
+
+def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
+    """Return evenly spread reference directions by the method of Das and Dennis.
+
+    Parameters
+    ----------
+    n_obj : int
+    n_points : int
+        At most how many; the largest simplex lattice within is taken. With two objectives there are exactly ``n_points``, with
+        three 1, 3, 6, 10, ..., 91, ...
+
+    Returns
+    -------
+    numpy.ndarray, shape (n_directions, n_obj)
+
+    Raises
+    ------
+    CapabilityError
+        If n_points is less than n_obj, the directions of the objectives themselves.
+
+    References
+    ----------
+    I. Das and J. E. Dennis, "Normal-boundary intersection: a new method for generating the Pareto surface in nonlinear
+    multicriteria optimization problems", SIAM Journal on Optimization 8(3), 1998.
+
+    Examples
+    --------
+    >>> reference_directions(2, 3).tolist()
+    [[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]]
+    >>> len(reference_directions(3, 100))
+    91
+    """
+    if n_points < n_obj:
+        raise CapabilityError(f"{n_obj} objectives need at least {n_obj} reference directions, got room for {n_points}")
+    n_partitions = get_partition_closest_to_points(n_points, n_obj)
+    return UniformReferenceDirectionFactory(n_obj, n_partitions=n_partitions).do()
+
+
+def _class_of(row: Capability) -> type:
+    if row.name == "MOEAD":
+        return SmoothMOEAD
+    package = _PACKAGES.get(row.extra, row.extra)
+    if package and importlib.util.find_spec(package) is None:
+        raise CapabilityError(f"{row.name} needs the package {row.extra}, which is not installed: pip install {row.extra}")
+    return getattr(importlib.import_module(row.module), row.name)
+
+
+def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, Any]:
+    if row.one_child and getattr(given.get("crossover"), "n_offsprings", 1) != 1:
+        raise CapabilityError(f"{row.name} needs a crossover that gives one child: n_offsprings=1")
+    if given.keys() >= set(_OPERATORS):
+        return {}
+    made = paper_operators(problem)
+    if row.one_child:
+        made["crossover"].n_offsprings = 1
+    if not row.repair:
+        del made["repair"]
+    return made
+
+
+def _smoothness(row: Capability, problem, smoothness: bool | None, given: Mapping[str, Any]) -> dict[str, Any]:
+    own = [key for key in ("selection", "survival") if key in given]
+    if smoothness and not row.smoothness:
+        able = ", ".join(other.name for other in CAPABILITIES.values() if other.smoothness)
+        raise CapabilityError(f"{row.name} has no smoothness tie-break; {able} have one")
+    if smoothness and own:
+        raise CapabilityError(f"smoothness=True brings its own {own[0]}; leave out one of the two")
+    if smoothness is None:
+        smoothness = row.smoothness and not own and "turn" not in getattr(problem, "objective_names", ())
+    if row.name == "MOEAD":
+        return {"smoothness": smoothness}
+    if not smoothness:
+        return {}
+    if row.name == "SPEA2":
+        return {"selection": StrengthTournament(), "survival": StrengthAndSmoothness()}
+    return {"selection": SmoothnessTournament(), "survival": RankAndSmoothness()}
+
+
+def _references(row: Capability, problem, pop_size: int, given: Mapping[str, Any]) -> dict[str, Any]:
+    if row.needs == "ref_dirs":
+        return {"ref_dirs": _ref_dirs(row, problem, pop_size, given.get("ref_dirs"))}
+    if row.needs == "automated_dm" and given.get("automated_dm") is None:
+        raise CapabilityError(f"{row.name} asks a decision maker during the run; give one as automated_dm")
+    if row.needs != "ref_points":
+        return {}
+    if given.get("ref_points") is None:
+        raise CapabilityError(
+            f"{row.name} searches near reference points; give ref_points, one row of {problem.n_obj} values each"
+        )
+    points = _rows("ref_points", given["ref_points"], problem)
+    if row.name == "RNSGA2" or "pop_per_ref_point" in given:
+        return {"ref_points": points}
+    room = (pop_size - problem.n_obj) // len(points)
+    if room < problem.n_obj:
+        least = len(points) * problem.n_obj + problem.n_obj
+        raise CapabilityError(f"RNSGA3 needs pop_size {least} or more for {len(points)} reference points, got {pop_size}")
+    per_point = get_number_of_uniform_points(get_partition_closest_to_points(room, problem.n_obj), problem.n_obj)
+    return {"ref_points": points, "pop_per_ref_point": per_point}
+
+
+def _ref_dirs(row: Capability, problem, pop_size: int, ref_dirs) -> np.ndarray:
+    if ref_dirs is None:
+        return reference_directions(problem.n_obj, pop_size)
+    ref_dirs = _rows("ref_dirs", ref_dirs, problem)
+    own_size = row.name in ("MOEAD", "ParallelMOEAD", "CTAEA")
+    if len(ref_dirs) < 2 or (len(ref_dirs) > pop_size and not own_size):
+        raise CapabilityError(f"ref_dirs has {len(ref_dirs)} rows, expected 2 to pop_size = {pop_size}")
+    return ref_dirs
+
+
+def _rows(name: str, values, problem) -> np.ndarray:
+    values = np.array(values, dtype=float)
+    if values.ndim != 2 or values.shape[1] != problem.n_obj or not len(values):
+        raise CapabilityError(f"{name} has shape {values.shape}, expected rows of {problem.n_obj} values, one an objective")
+    return values
+
+
+def _whole_number_mating(algorithm) -> WholeNumberDE:
+    """Return pymoo's mating of a differential evolution with its settings, made fit for whole numbers."""
+    mating = WholeNumberDE(repair=algorithm.repair)
+    kept = {key: value for key, value in vars(algorithm.mating).items() if key != "repair"}
+    mating.__dict__.update(kept)
+    return mating

@@ -1,0 +1,78 @@
+"""Several runs of one algorithm from different initial populations."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+
+from pymoo.core.algorithm import Algorithm
+from pymoo.core.callback import Callback
+from pymoo.core.result import Result
+from pymoo.core.termination import Termination
+
+from pymoo_gridpath.errors import GridPathError
+
+
+def minimize_runs(
+    problem,
+    algorithm: Algorithm,
+    termination: Termination | tuple | None = None,
+    n_runs: int = 10,
+    seed: int = 1,
+    callback: Callback | None = None,
+    observe: Callable[[int, Algorithm], bool | None] | None = None,
+) -> list[Result]:
+    """Run an algorithm several times and return all Results, for `TradeOffSet.from_results` to merge into one front.
+
+    Run k is ``pymoo.optimize.minimize(problem, algorithm, termination, seed=seed + k)``, bit for bit.
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+    algorithm : pymoo.core.algorithm.Algorithm
+        Not changed: every run has a copy.
+    termination : pymoo termination, optional
+        As for `pymoo.optimize.minimize`.
+    n_runs : int, default 10
+        The paper's number.
+    seed : int, default 1
+        Seed of the first run.
+    callback : pymoo.core.callback.Callback, optional
+        Every run has a copy of its own, at ``result.algorithm.callback``.
+    observe : callable, optional
+        Called as ``observe(k, algorithm)`` after every generation of run k. If it returns True, the runs end there, and
+        what was found is returned.
+
+    Returns
+    -------
+    list of pymoo.core.result.Result
+        One of each run, fewer if ``observe`` ended them.
+
+    Raises
+    ------
+    GridPathError
+        If ``n_runs`` is less than one.
+
+    References
+    ----------
+    Ahmed and Deb (2013), section 5: ten runs, whose fronts are merged.
+    """
+    if n_runs < 1:
+        raise GridPathError(f"n_runs is {n_runs}, expected at least 1")
+    results = []
+    for k in range(n_runs):
+        run = copy.deepcopy(algorithm)
+        options: dict = {} if callback is None else {"callback": copy.deepcopy(callback)}
+        if termination is not None:
+            options["termination"] = copy.deepcopy(termination)
+        run.setup(problem, seed=seed + k, **options)
+        stopped = False
+        while run.has_next() and not stopped:
+            run.next()
+            stopped = bool(observe and observe(k, run))
+        result = run.result()
+        result.algorithm = run
+        results.append(result)
+        if stopped:
+            break
+    return results
