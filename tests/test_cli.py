@@ -1,0 +1,218 @@
+"""The command line as a user meets it: real processes, their output, files and exit codes."""
+
+import csv
+import io
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from pymoo_gridpath.cli import main
+from pymoo_gridpath.maps import load_map, shipped_maps
+from pymoo_gridpath.progress import Progress
+
+FAST = ["--pop-size", "30", "--generations", "10"]
+
+
+def run(*arguments, cwd=None, **options):
+    command = [sys.executable, "-m", "pymoo_gridpath.cli", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False, **options)
+
+
+@pytest.fixture
+def free_map(tmp_path):
+    path = tmp_path / "room.txt"
+    path.write_text("......\n..##..\n......\n......\n")
+    return path
+
+
+def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
+    out = tmp_path / "out"
+    done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "--seed", "4", "-o", out)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == "", "progress must be silent in a pipe"
+    assert "shortest" in done.stdout and "vulnerability" in done.stdout
+    names = {"paths.csv", "paths.json", "map.png", "map.pdf", "front.png", "front.pdf", "convergence.png", "convergence.pdf"}
+    assert {file.name for file in out.iterdir()} == names
+    document = json.loads((out / "paths.json").read_text())
+    with open(out / "paths.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    paths = document["paths"]
+    assert len(rows) == len(paths) >= 1
+    for path in paths:
+        assert path["cells"][0] == [0, 0] and path["cells"][-1] == [5, 3] and path["interfering_cells"] == 0
+        assert {"points", "length", "vulnerability", "turn", "names"} <= set(path)
+    assert document["seed"] == 4
+
+
+def test_same_seed_writes_the_same_paths(tmp_path, free_map):
+    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST]
+    contents = []
+    for name in ("a", "b"):
+        assert run(*arguments, "-o", tmp_path / name).returncode == 0
+        contents.append((tmp_path / name / "paths.csv").read_bytes())
+    assert contents[0] == contents[1]
+
+
+def test_plan_without_a_map_plans_a_shipped_one(tmp_path):
+    done = run("plan", *FAST, cwd=tmp_path)
+    assert done.returncode in (0, 1), done.stderr
+    assert "warehouse" in done.stdout and (tmp_path / "gridpath-out" / "map.png").exists()
+
+
+@pytest.mark.parametrize("algorithm", ["spea2", "moea/d", "NSGA-III"])
+def test_plan_takes_other_algorithms_and_settings(tmp_path, free_map, algorithm):
+    done = run(
+        *("plan", free_map, "--start", "0,0", "--goal", "5,3", "--algorithm", algorithm, *FAST),
+        *("--representation", "mixed", "--objectives", "length,vulnerability,turn", "--runs", "2", "-o", tmp_path / "out"),
+        *("--units", "m", "--obstacles", "penalty", "--resolution", "0.5", "--corner-cutting", "--radius", "0.1"),
+    )
+    assert done.returncode == 0, done.stderr
+    document = json.loads((tmp_path / "out" / "paths.json").read_text())
+    assert document["map"]["resolution"] == 0.5 and document["map"]["corner_cutting"] is True
+    assert document["seed"] == [1, 2]
+
+
+def test_plan_with_one_objective(tmp_path, free_map):
+    done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", "--objectives", "length", *FAST, "-o", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    assert "shortest" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["plan", "nowhere.map"], "nowhere.map"),
+        (["plan", "warehuose"], "warehouse"),
+        (["plan", "MAP"], "needs --start and --goal"),
+        (["plan", "MAP", "--start", "0,0"], "needs --goal"),
+        (["plan", "MAP", "--start", "0;0", "--goal", "5,3"], "expected X,Y"),
+        (["plan", "MAP", "--start", "2,2", "--goal", "5,3"], "start (2, 2) lies on an obstacle"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "6,3"], "goal (6, 3) lies outside"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "nsga9"], "did you mean"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "MOPSO_CD"], "MOPSO_CD"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "invalid choice: 'real'"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--objectives", "lenght"], "did you mean 'length'"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "robot's radius of 5 m"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "-1"], "robot radius is -1"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "0"], "0 is not a positive whole number"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "ten"], "'ten' is not a whole number"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--potential-limit", "3"], "potential_limit is for"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--threshold", "0.5"], "threshold"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "-o", "MAP"], "output directory"),
+        (["info", "broken.yaml"], "broken.yaml"),
+        (["info"], "required: MAP"),
+        (["fly"], "invalid choice"),
+        ([], "required"),
+    ],
+)
+def test_bad_input_gives_one_line_and_exit_code_2(tmp_path, free_map, arguments, message, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "broken.yaml").write_text("- not\n- a mapping\n")
+    arguments = [str(free_map) if a == "MAP" else a for a in arguments]
+    try:
+        code = main(arguments)
+    except SystemExit as error:
+        code = error.code
+    captured = capsys.readouterr()
+    assert code == 2
+    assert captured.err.count("\n") == 1 and captured.err.startswith("pymoo-gridpath") and message in captured.err
+    assert captured.out == ""
+
+
+def test_no_legal_path_is_said_and_exits_with_1(tmp_path):
+    # A comb that leaves one winding way through; two individuals and one generation will not find it.
+    rows = ["".join("." if (x % 4 == 1) or (y == (0 if x % 4 < 1 else 9)) else "#" for x in range(22)) for y in range(10)]
+    rows = ["." + row[1:-1] + "." for row in rows]
+    grid = tmp_path / "comb.txt"
+    grid.write_text("\n".join(["." * 22 if y in (0, 9) else row for y, row in enumerate(rows)]).replace("\n", "\n") + "\n")
+    done = run("plan", grid, "--start", "0,5", "--goal", "21,5", "--pop-size", "2", "--generations", "1", "-o", tmp_path / "out")
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "no legal path was found" in done.stderr
+    assert (tmp_path / "out" / "paths.json").exists()
+
+
+def test_ctrl_c_keeps_the_front_found_so_far(tmp_path):
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", "paper16", "--generations", "100000", "--pop-size", "40", "-o", str(out)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    assert "paper16" in process.stdout.readline()
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    stdout, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in stderr and "Traceback" not in stderr
+    document = json.loads((out / "paths.json").read_text())
+    assert document["paths"] and "shortest" in stdout
+
+
+def test_closed_pipe_is_no_error(tmp_path, free_map):
+    command = f"{sys.executable} -m pymoo_gridpath.cli maps | true"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert "Traceback" not in done.stderr and "Exception" not in done.stderr
+
+
+def test_maps_lists_every_shipped_map(capsys):
+    assert main(["maps"]) == 0
+    out = capsys.readouterr().out
+    for item in shipped_maps():
+        grid = load_map(item.name)
+        line = next(line for line in out.splitlines() if line.startswith(item.name))
+        assert f"{grid.width} x {grid.height}" in " ".join(line.split())
+        assert f"from {item.start[0]},{item.start[1]} to {item.goal[0]},{item.goal[1]}" in line
+
+
+def test_info_describes_a_file(free_map, capsys):
+    assert main(["info", str(free_map), "--resolution", "0.5"]) == 0
+    out = capsys.readouterr().out
+    assert "6 x 4 cells, 3 x 2 m" in out and "2 cells, 8.3%" in out and "0.5 m a cell" in out
+    assert main(["info", "office"]) == 0
+    assert "query" in capsys.readouterr().out
+
+
+def test_version_and_help(capsys):
+    for arguments in (["--version"], ["--help"], ["plan", "--help"]):
+        with pytest.raises(SystemExit) as stop:
+            main(arguments)
+        assert stop.value.code == 0
+    assert "pymoo-gridpath 0." in capsys.readouterr().out
+
+
+class FakeAlgorithm:
+    def __init__(self, perc):
+        self.termination = type("T", (), {"perc": perc})()
+        self.pop = type("P", (), {"get": lambda self, key: __import__("numpy").array([0, 2, 0])})()
+
+
+def test_progress_shows_on_a_terminal_and_clears_its_line():
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    stream = Terminal()
+    with Progress(3, 200, stream, interval=0) as progress:
+        progress.update(1, FakeAlgorithm(0.25))
+    text = stream.getvalue()
+    assert "run 2/3, generation 50/200, 2 legal paths" in text and "s left" in text
+    assert text.endswith("\r\x1b[K")
+    silent = io.StringIO()
+    with Progress(3, 200, silent, interval=0) as progress:
+        progress.update(1, FakeAlgorithm(0.25))
+    assert silent.getvalue() == ""
+
+
+def test_progress_appears_on_a_real_terminal(tmp_path, free_map):
+    master, slave = pty.openpty()
+    command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", str(free_map), "--start", "0,0", "--goal", "5,3"]
+    command += ["--pop-size", "50", "--generations", "60", "-o", str(tmp_path / "out")]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=slave)
+    assert process.wait(timeout=120) == 0
+    os.close(slave)
+    shown = os.read(master, 100_000).decode()
+    os.close(master)
+    assert "generation" in shown and "legal paths" in shown
