@@ -85,6 +85,7 @@ def _parser() -> argparse.ArgumentParser:
     search.add_argument(
         "--obstacles", choices=("penalty", "constraint", "limit"), help="how collisions are ruled out (default: penalty)"
     )
+    search.add_argument("--penalty", type=float, metavar="P", help="what crossing an occupied cell adds to each objective")
     search.add_argument("--potential-limit", type=float, metavar="P0", help="largest vulnerability, with --obstacles limit")
     search.add_argument(
         "--axis", choices=("auto", "x", "y"), default="auto", help="axis along which paths advance (default: auto)"
@@ -163,6 +164,7 @@ def _plan(arguments) -> int:
         representation=arguments.representation,
         objectives=arguments.objectives,
         obstacles=arguments.obstacles or "penalty",
+        penalty=arguments.penalty,
         potential_limit=arguments.potential_limit,
         axis=arguments.axis,
     )

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import SQRT2
-
-if TYPE_CHECKING:
-    from pymoo_gridpath.representations.frame import MonotoneFrame
 
 #: Degrees of one unit of turning; headings on an eight-connected grid are multiples of it.
 TURN_UNIT = 45
@@ -33,6 +30,31 @@ class ColumnPaths:
         self.frame = frame
         self.enter = enter
         self.leave = leave
+
+    @classmethod
+    def through(cls, frame: MonotoneFrame, exit_rows: np.ndarray) -> ColumnPaths:
+        """Return the paths that leave columns 0 to n_columns - 2 at the given rows and climb as soon as they can.
+
+        Each step to the next column goes one row towards the row where that column is left (for the last column: the
+        goal's row), diagonally, and the rest of the climb is made in that column. Where the grid forbids to cut a corner, a
+        diagonal that would cut one is taken as a horizontal step instead.
+
+        Parameters
+        ----------
+        frame : MonotoneFrame
+        exit_rows : numpy.ndarray of int, shape (N, n_columns - 1)
+            Within 0 and n_rows - 1.
+        """
+        leave = np.empty((len(exit_rows), frame.n_columns), dtype=np.int32)
+        leave[:, :-1] = exit_rows
+        leave[:, -1] = frame.goal_row
+        step = np.sign(leave[:, 1:] - leave[:, :-1])
+        if not frame.grid.corner_cutting:
+            step *= frame.flanks_at(leave[:, :-1], step) == 0
+        enter = np.empty_like(leave)
+        enter[:, 0] = frame.start_row
+        np.add(leave[:, :-1], step, out=enter[:, 1:])
+        return cls(frame, enter, leave)
 
     def __len__(self) -> int:
         return len(self.enter)

@@ -11,6 +11,7 @@ import sys
 import time
 
 import pytest
+
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.progress import Progress
@@ -125,12 +126,13 @@ def test_bad_input_gives_one_line_and_exit_code_2(tmp_path, free_map, arguments,
 
 
 def test_no_legal_path_is_said_and_exits_with_1(tmp_path):
-    # A comb that leaves one winding way through; two individuals and one generation will not find it.
-    rows = ["".join("." if (x % 4 == 1) or (y == (0 if x % 4 < 1 else 9)) else "#" for x in range(22)) for y in range(10)]
-    rows = ["." + row[1:-1] + "." for row in rows]
-    grid = tmp_path / "comb.txt"
-    grid.write_text("\n".join(["." * 22 if y in (0, 9) else row for y, row in enumerate(rows)]).replace("\n", "\n") + "\n")
-    done = run("plan", grid, "--start", "0,5", "--goal", "21,5", "--pop-size", "2", "--generations", "1", "-o", tmp_path / "out")
+    # Walls with one gap each, far apart: two individuals and one generation will not find the way.
+    gaps = {2: 0, 5: 11, 8: 0, 11: 11, 14: 0, 17: 11}
+    rows = ["".join("#" if gaps.get(x, y) != y else "." for x in range(20)) for y in range(12)]
+    grid = tmp_path / "walls.txt"
+    grid.write_text("\n".join(rows))
+    arguments = ["plan", grid, "--start", "0,5", "--goal", "19,5", "--pop-size", "2", "--generations", "1"]
+    done = run(*arguments, "-o", tmp_path / "out")
     assert done.returncode == 1, done.stdout + done.stderr
     assert "no legal path was found" in done.stderr
     assert (tmp_path / "out" / "paths.json").exists()
@@ -138,7 +140,19 @@ def test_no_legal_path_is_said_and_exits_with_1(tmp_path):
 
 def test_ctrl_c_keeps_the_front_found_so_far(tmp_path):
     out = tmp_path / "out"
-    command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", "paper16", "--generations", "100000", "--pop-size", "40", "-o", str(out)]
+    command = [
+        sys.executable,
+        "-m",
+        "pymoo_gridpath.cli",
+        "plan",
+        "paper16",
+        "--generations",
+        "100000",
+        "--pop-size",
+        "40",
+        "-o",
+        str(out),
+    ]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None
     assert "paper16" in process.stdout.readline()

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from pymoo.algorithms.moo.nsga2 import NSGA2
-from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.termination import Termination
 from pymoo.termination.max_gen import MaximumGenerationTermination
-from pymoo.util.display.multi import MultiObjectiveOutput
-from pymoo.util.display.single import SingleObjectiveOutput
 
+from pymoo_gridpath.algorithms.factory import make_algorithm
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective, make_objectives
-from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, paper_operators
+from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem
 
 
@@ -36,6 +33,7 @@ def ahmed_deb_2013(
     objectives: Sequence[str | Objective] | str = ("length", "vulnerability"),
     pop_size: int = 500,
     n_gen: int = 500,
+    penalty: float | None = None,
     termination: Termination | None = None,
     **problem_options,
 ) -> Setup:
@@ -61,6 +59,10 @@ def ahmed_deb_2013(
         The paper takes 500, and 200 for Table 1.
     n_gen : int, default 500
         Number of generations.
+    penalty : float, optional
+        What an interfering cell adds to every objective. By default 1, for the paper penalises "the objective(s) with the count
+        of interfering cells" (section 4.1) and names no other weight; with another way to treat obstacles, that of
+        `GridPathProblem`.
     termination : pymoo termination, optional
         In place of ``n_gen``, such as `FirstLegalPath` for Table 1.
     **problem_options
@@ -87,15 +89,11 @@ def ahmed_deb_2013(
     made = make_objectives(objectives)
     if len(made) == 1:
         problem_options.setdefault("obstacles", "constraint")
-    problem = GridPathProblem(grid, start, goal, representation, made, **problem_options)
+    if penalty is None and problem_options.get("obstacles", "penalty") == "penalty":
+        penalty = 1.0
+    problem = GridPathProblem(grid, start, goal, representation, made, penalty=penalty, **problem_options)
     if len(made) == 1:
-        operators = paper_operators(problem, eta_crossover=2.0)
-        algorithm = GA(pop_size=pop_size, output=SingleObjectiveOutput(), **operators)
+        algorithm = make_algorithm("GA", problem, pop_size, operators=paper_operators(problem, eta_crossover=2.0))
     else:
-        operators = paper_operators(problem)
-        if len(made) == 2:
-            selection = SmoothnessTournament()
-            mating = ArrayMating(selection, operators["crossover"], operators["mutation"], operators["repair"])
-            operators |= {"selection": selection, "survival": RankAndSmoothness(), "mating": mating}
-        algorithm = NSGA2(pop_size=pop_size, output=MultiObjectiveOutput(), **operators)
+        algorithm = make_algorithm("NSGA2", problem, pop_size, smoothness=len(made) == 2)
     return Setup(problem, algorithm, termination or MaximumGenerationTermination(n_gen))

@@ -156,4 +156,4 @@ def _rows_shown(trade_off, max_rows: int | None) -> Sequence[int]:
 def _numbers(values: np.ndarray) -> list[str]:
     if values.dtype.kind in "iub" or (np.isfinite(values).all() and (values == values.round()).all()):
         return [f"{value:.0f}" for value in values]
-    return [f"{value:.4g}" if value and abs(value) < 1e-3 else f"{value:.3f}" for value in values]
+    return [f"{value:.4g}" if value and abs(value) < 0.1 else f"{value:.3f}" for value in values]

@@ -9,12 +9,15 @@ import numpy as np
 from pymoo.core.problem import Problem
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.representations import Representation, make_representation
-from pymoo_gridpath.representations.frame import Axis
 
 Obstacles = Literal["penalty", "constraint", "limit"]
+# Chosen by measurement on the shipped maps and random grids, see the parameter.
+DEFAULT_PENALTY = 2.0
+
 # Genes that are evaluated at a time.
 PART_SIZE = 12000
 
@@ -41,7 +44,11 @@ class GridPathProblem(Problem):
         - "limit": the paper's eq. (1). An occupied cell has the extremely high potential ``penalty``, which adds to the
           vulnerability, and ``G`` keeps the vulnerability at or below ``potential_limit``.
     penalty : float, optional
-        By default the number of cells of the grid, so that crossing one obstacle less outweighs any reasonable detour.
+        What an interfering cell costs. By default 2 with ``obstacles="penalty"``, and the number of cells of the grid with
+        "limit", higher than any potential limit worth setting. A small penalty keeps the search diverse, since a path across an
+        obstacle may still be non-dominated by its length; a large one makes the number of obstacles decide almost alone, and
+        searches end in the first corridor they find. With too small a penalty, paths across obstacles crowd the legal ones
+        out; at 1 this happens on floors with thick walls.
     potential_limit : float, optional
         P0, with ``obstacles="limit"`` only, and needed there. Choose it below ``penalty``, so that no path with an
         interfering cell keeps it.
@@ -97,7 +104,7 @@ class GridPathProblem(Problem):
         self.start, self.goal = grid.check_query(start, goal)
         self.objectives = make_objectives(objectives)
         self.obstacles = obstacles
-        self.penalty = float(grid.occupied.size if penalty is None else penalty)
+        self.penalty = float(self._default_penalty() if penalty is None else penalty)
         self.potential_limit = potential_limit
         self._check_obstacles()
         if isinstance(representation, str):
@@ -128,6 +135,9 @@ class GridPathProblem(Problem):
             )
         elif self.potential_limit is None or not self.potential_limit > 0:
             raise GridPathError(f"potential_limit is {self.potential_limit}, expected a positive number with obstacles='limit'")
+
+    def _default_penalty(self) -> float:
+        return self.grid.occupied.size if self.obstacles == "limit" else DEFAULT_PENALTY
 
     @property
     def objective_names(self) -> list[str]:

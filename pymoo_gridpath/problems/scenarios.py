@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.errors import GridError
+from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.representations import IntegerRepresentation
+from pymoo_gridpath.paths import ColumnPaths
 
 
 def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | int) -> OccupancyGrid:
@@ -46,9 +47,9 @@ def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | 
         raise GridError(f"p0 is {p0}, expected a probability from 0 to 1")
     random_state = np.random.default_rng(random_state)
     empty = OccupancyGrid(np.zeros((size, size), dtype=bool), corner_cutting=True)
-    frame = IntegerRepresentation(empty, (0, 0), (size - 1, size - 1)).frame
+    frame = MonotoneFrame(empty, (0, 0), (size - 1, size - 1))
     rows = np.sort(random_state.integers(0, size, size=size - 1))
-    path = frame.paths(rows[None, :]).cells(0)
+    path = ColumnPaths.through(frame, rows[None, :]).cells(0)
     occupied = random_state.random((size, size)) < p0
     occupied[path[:, 1], path[:, 0]] = False
     return OccupancyGrid(occupied, corner_cutting=True, name=f"random {size} x {size}, p0 = {p0:g}")

@@ -6,11 +6,11 @@ import difflib
 from collections.abc import Sequence
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.representations.absolute import AbsoluteRepresentation
 from pymoo_gridpath.representations.base import MonotoneRepresentation, Representation
 from pymoo_gridpath.representations.binary import BinaryRepresentation
-from pymoo_gridpath.representations.frame import Axis, MonotoneFrame
 from pymoo_gridpath.representations.integer import IntegerRepresentation
 from pymoo_gridpath.representations.mixed import MixedRepresentation
 
@@ -54,7 +54,6 @@ __all__ = [
     "BinaryRepresentation",
     "IntegerRepresentation",
     "MixedRepresentation",
-    "MonotoneFrame",
     "MonotoneRepresentation",
     "Representation",
     "make_representation",

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.frame import Axis, MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
-from pymoo_gridpath.representations.frame import Axis, MonotoneFrame
 
 
 class Representation(ABC):
@@ -118,7 +118,7 @@ class MonotoneRepresentation(Representation):
             N paths from the start to the goal; the last column is climbed to the goal whatever the genes (the paper's end
             fixing). A move that would leave the grid ends at its edge: `repair` is what draws the paper's random row.
         """
-        return self.frame.paths(self.exit_rows(X))
+        return ColumnPaths.through(self.frame, self.exit_rows(X))
 
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
         """Return X with the paper's random edge fixing written into the genes (section 2.1).

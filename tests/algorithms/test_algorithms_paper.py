@@ -9,6 +9,7 @@ import pytest
 from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.core.callback import Callback
 from pymoo.optimize import minimize
+
 from pymoo_gridpath.algorithms import FirstLegalPath, ahmed_deb_2013, make_algorithm, minimize_runs
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
@@ -29,6 +30,7 @@ def test_preset_carries_the_papers_parameters():
     assert mating.mutation.prob.get() == 1.0
     assert isinstance(algorithm.survival, RankAndSmoothness) and isinstance(mating.selection, SmoothnessTournament)
     assert problem.objective_names == ["length", "vulnerability"] and problem.obstacles == "penalty"
+    assert problem.penalty == 1.0  # the count of interfering cells itself, section 4.1
     assert problem.representation.name == "integer"
 
 
@@ -116,7 +118,9 @@ print(hashlib.sha256(pop.get("X").tobytes() + pop.get("F").tobytes()).hexdigest(
 """
 
 
-@pytest.mark.parametrize(("name", "representation"), [("NSGA2", "integer"), ("NSGA2", "mixed"), ("SPEA2", "binary"), ("MOEAD", "integer")])
+@pytest.mark.parametrize(
+    ("name", "representation"), [("NSGA2", "integer"), ("NSGA2", "mixed"), ("SPEA2", "binary"), ("MOEAD", "integer")]
+)
 def test_same_seed_same_bits_in_a_fresh_process(name, representation):
     problem = GridPathProblem(GRID, *QUERY, representation)
     pop = minimize(problem, make_algorithm(name, problem, pop_size=30), ("n_gen", 10), seed=5).pop

@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
+from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Vulnerability
-from pymoo_gridpath.representations import REPRESENTATIONS, MonotoneFrame, make_representation
+from pymoo_gridpath.representations import REPRESENTATIONS, make_representation
 
 NAMES = sorted(REPRESENTATIONS)
 

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from pymoo_gridpath.errors import GridError, UnreachableError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.paths import ColumnPaths
 
 Axis = Literal["auto", "x", "y"]
 
@@ -135,7 +134,7 @@ class MonotoneFrame:
         return self.prefix_sums(self.grid.occupied)
 
     def prefix_sums(self, field: np.ndarray) -> np.ndarray:
-        """Return the sums of a field up each column, for `ColumnPaths.total`.
+        """Return the sums of a field up each column, for `pymoo_gridpath.paths.ColumnPaths.total`.
 
         Parameters
         ----------
@@ -152,29 +151,6 @@ class MonotoneFrame:
         sums = np.zeros((self.n_columns, self.n_rows + 1), dtype=kind)
         np.cumsum(framed, axis=1, out=sums[:, 1:])
         return sums
-
-    def paths(self, exit_rows: np.ndarray) -> ColumnPaths:
-        """Return the paths that leave columns 0 to n_columns - 2 at the given rows and climb as soon as they can.
-
-        Each step to the next column goes one row towards the row where that column is left (for the last column: the goal's
-        row), diagonally, and the rest of the climb is made in that column. Where the grid forbids to cut a corner, a diagonal
-        that would cut one is taken as a horizontal step instead.
-
-        Parameters
-        ----------
-        exit_rows : numpy.ndarray of int, shape (N, n_columns - 1)
-            Within 0 and n_rows - 1.
-        """
-        leave = np.empty((len(exit_rows), self.n_columns), dtype=np.int32)
-        leave[:, :-1] = exit_rows
-        leave[:, -1] = self.goal_row
-        step = np.sign(leave[:, 1:] - leave[:, :-1])
-        if not self.grid.corner_cutting:
-            step *= self.flanks_at(leave[:, :-1], step) == 0
-        enter = np.empty_like(leave)
-        enter[:, 0] = self.start_row
-        np.add(leave[:, :-1], step, out=enter[:, 1:])
-        return ColumnPaths(self, enter, leave)
 
     def flanks_at(self, row: np.ndarray, step: np.ndarray) -> np.ndarray:
         """Return `flanks` for steps that leave all columns but the last, both arguments of shape (N, n_columns - 1)."""
