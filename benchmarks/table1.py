@@ -1,9 +1,10 @@
 """Run Table 1 of Ahmed and Deb (2013) and print its columns beside the paper's.
 
-Each run draws its own random scenario of section 6 (path kept free, the rest occupied with probability p0) from its number, and
-searches it by the paper's modified NSGA-II with 200 individuals until the first legal path, or for 500 generations.
-The paper does not say how its scenarios were drawn, nor whether the runs of a row share one. Its lengths look like
-those of runs that went on to the last generation, though it says that runs ended with the first legal path: ``--full`` goes on.
+A row has one random scenario of section 6 (a path kept free, the rest occupied with probability p0), drawn from its size and
+p0, as the whole numbers of obstacles in the paper suggest; ``--scenarios 100`` gives every run its own. Runs search it by
+the paper's modified NSGA-II with 200 individuals until the first legal path, or for 500 generations. The paper's lengths look
+like those of runs that went on to the last generation, though it says that they ended with the first legal path: ``--full``
+goes on.
 
 Run with ``python benchmarks/table1.py``; ``--help`` lists the options. The whole table takes about an hour on two cores.
 """
@@ -15,7 +16,7 @@ import os
 import time
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 # One thread for each process: the arrays are small, and threads of the linear algebra would only get in each other's way.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -77,14 +78,15 @@ class FirstLegalGeneration(Callback):
 
     generation: int | None = None
 
-    def _update(self, algorithm):
+    def _update(self, algorithm: Any) -> None:
         if self.generation is None and (algorithm.pop.get("interfering_cells") == 0).any():
             self.generation = algorithm.n_gen
 
 
-def run(number: int, size: int, p0: float, n_gen: int, full: bool) -> Run:
-    """Search the scenario of that number for a legal path."""
-    grid = random_dense_grid(size, p0, np.random.default_rng([size, round(100 * p0), number]))
+def run(number: int, size: int, p0: float, n_scenarios: int, n_gen: int, full: bool) -> Run:
+    """Search one of the row's scenarios for a legal path."""
+    scenario = 1 + (number - 1) % n_scenarios
+    grid = random_dense_grid(size, p0, np.random.default_rng([size, round(100 * p0), scenario]))
     termination = MaximumGenerationTermination(n_gen) if full else FirstLegalPath(n_gen)
     setup = ahmed_deb_2013(grid, (0, 0), (size - 1, size - 1), pop_size=200, termination=termination)
     callback = FirstLegalGeneration()
@@ -101,13 +103,14 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", choices=(8, 16, 32), default=(8, 16, 32), help="grid sizes")
     parser.add_argument("--p0", type=float, nargs="+", help="obstacle probabilities (default: all)")
     parser.add_argument("--runs", type=int, default=100, help="runs of each row")
+    parser.add_argument("--scenarios", type=int, default=1, help="random scenarios shared out among a row's runs (default: 1)")
     parser.add_argument("--generations", type=int, default=500)
     parser.add_argument("--full", action="store_true", help="go on to the last generation after the first legal path")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
     arguments = parser.parse_args()
 
     when = "at the last generation" if arguments.full else "at the first legal path"
-    print(f"{arguments.runs} runs a row, lengths {when}; ours beside the paper's")
+    print(f"{arguments.runs} runs a row on {arguments.scenarios} scenario(s), lengths {when}; ours beside the paper's")
     print("grid     p0 |      obstacles |   success % | median generations |     mean length |  seconds a run")
     start = time.perf_counter()
     n_runs, failed_rows = 0, []
@@ -116,7 +119,9 @@ def main() -> None:
             if size not in arguments.sizes or (arguments.p0 and p0 not in arguments.p0):
                 continue
             row_start = time.perf_counter()
-            job = partial(run, size=size, p0=p0, n_gen=arguments.generations, full=arguments.full)
+            job = partial(
+                run, size=size, p0=p0, n_scenarios=arguments.scenarios, n_gen=arguments.generations, full=arguments.full
+            )
             runs = list(pool.map(job, range(1, arguments.runs + 1)))
             n_runs += len(runs)
             found = [r for r in runs if r.found]

@@ -11,6 +11,7 @@ import numpy as np
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.paths import TURN_UNIT
 
 
 class Objective(ABC):
@@ -25,10 +26,13 @@ class Objective(ABC):
         What tables and files call it.
     label : str
         What an axis of a figure says, with the unit.
+    penalty_unit : float
+        What a penalty of 1 adds to it: 1, or the objective's own step where it counts in larger ones.
     """
 
     name: str
     label: str
+    penalty_unit: float = 1.0
 
     def field(self, grid: OccupancyGrid) -> np.ndarray | None:
         """Return the cost of each cell, shape (height, width), if the objective is a sum over visited cells, else None."""
@@ -106,6 +110,7 @@ class Turn(Objective):
 
     name = "turn"
     label = "Total turn [degrees]"
+    penalty_unit = TURN_UNIT
 
     def __call__(self, paths, sums=None):
         return paths.turn.astype(float)

@@ -18,7 +18,14 @@ from pymoo_gridpath.problems import GridPathProblem
 
 
 class Setup(NamedTuple):
-    """What `pymoo.optimize.minimize` takes, in its order."""
+    """What `pymoo.optimize.minimize` takes, in its order.
+
+    Attributes
+    ----------
+    problem : GridPathProblem
+    algorithm : pymoo.core.algorithm.Algorithm
+    termination : pymoo.core.termination.Termination
+    """
 
     problem: GridPathProblem
     algorithm: Algorithm

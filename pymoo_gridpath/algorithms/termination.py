@@ -14,6 +14,7 @@ class FirstLegalPath(Termination):
     Parameters
     ----------
     n_max_gen : int, default 500
+        Generations after which the run ends without one; the paper's number.
 
     Attributes
     ----------

@@ -144,8 +144,8 @@ class TradeOffSet:
         Parameters
         ----------
         results : pymoo.core.result.Result or sequence of them
-            Of the same grid, query, representation and objectives. Candidates are each Result's optimum, or its final
-            population if it has none or no optimum of any run is legal.
+            Of the same grid, query, representation and objectives. Candidates are each Result's optimum and its final
+            population, where a path across obstacles may have dominated a legal one.
         settings : mapping, optional
             What else to record under ``meta["settings"]``.
 
@@ -158,9 +158,7 @@ class TradeOffSet:
         if not runs:
             raise GridPathError("there are no Results, expected one or more")
         problem = _common_problem(runs)
-        X = np.concatenate([_genes(run, k, ("opt", "pop")[: 1 + (run.opt is None)]) for k, run in enumerate(runs)])
-        if not PathMeasures(problem).legal(problem.decode(X)).any():
-            X = np.concatenate([_genes(run, k, ("opt", "pop")) for k, run in enumerate(runs)])
+        X = np.concatenate([_genes(run, k) for k, run in enumerate(runs)])
         return cls(problem, X, _meta(problem, settings, [provenance.describe_run(run) for run in runs]))
 
     @classmethod
@@ -335,8 +333,8 @@ def _select(problem, measures: PathMeasures, X: np.ndarray) -> tuple[np.ndarray,
     return rows[np.array(order)[first]], feasible
 
 
-def _genes(run, number: int, sources: Sequence[str]) -> np.ndarray:
-    populations = [getattr(run, source, None) for source in sources]
+def _genes(run, number: int) -> np.ndarray:
+    populations = [getattr(run, source, None) for source in ("opt", "pop")]
     found = [np.atleast_2d(population.get("X")) for population in populations if population is not None and len(population)]
     if not found:
         raise GridPathError(

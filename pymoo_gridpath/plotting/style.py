@@ -66,7 +66,19 @@ def style_of(names) -> NameStyle:
 
 def figure_style(ax: Axes | None):
     """Return the context in which to draw: this package's style for Axes of its own, that of the caller for others."""
-    return mpl.rc_context(STYLE) if ax is None or ax in _OWN else contextlib.nullcontext()  # pyright: ignore[reportArgumentType]
+    return _style() if ax is None or ax in _OWN else contextlib.nullcontext()
+
+
+@contextlib.contextmanager
+def _style():
+    # Not matplotlib's rc_context, which would also put back what the first figure of a notebook switches on.
+    settings: dict[str, Any] = mpl.rcParams  # pyright: ignore[reportAssignmentType]
+    before = {key: settings[key] for key in STYLE}
+    settings.update(STYLE)
+    try:
+        yield
+    finally:
+        settings.update(before)
 
 
 def new_axes(figsize: tuple[float, float], projection: str | None = None) -> Axes:

@@ -39,7 +39,8 @@ class GridPathProblem(Problem):
     obstacles : {"penalty", "constraint", "limit"}, default "penalty"
         How paths are kept off obstacles.
 
-        - "penalty": every interfering cell adds ``penalty`` to every objective. pymoo sees no constraint.
+        - "penalty": every interfering cell adds ``penalty`` to every objective, and 45 times as many degrees to the turn. pymoo
+          sees no constraint.
         - "constraint": ``G`` is the number of interfering cells, which must be zero.
         - "limit": the paper's eq. (1). An occupied cell has the extremely high potential ``penalty``, which adds to the
           vulnerability, and ``G`` keeps the vulnerability at or below ``potential_limit``.
@@ -158,7 +159,7 @@ class GridPathProblem(Problem):
         parts = [self._measure(part) for part in np.array_split(x, n_parts)]
         F, turn, interfering = (np.concatenate(values) for values in zip(*parts, strict=True))
         if self.obstacles == "penalty":
-            F += (self.penalty * interfering)[:, None]
+            F += np.outer(self.penalty * interfering, [objective.penalty_unit for objective in self.objectives])
         elif self.obstacles == "constraint":
             out["G"] = interfering[:, None].astype(float)
         else:

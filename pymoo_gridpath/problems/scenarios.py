@@ -15,8 +15,8 @@ def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | 
 
     The path leads from the bottom-left to the top-right corner. The paper does not say how it is drawn; here each
     column but the last is left at a uniformly random row, the rows in ascending order, and the cells are those of the
-    integer coding. Its mean number of cells, about 1.5 a column, is close to what Table 1 implies at p0 = 1 (10, 23
-    and 57 cells for 8, 16 and 32).
+    integer coding. Over 200 draws such paths have 10.8, 21.8 and 43.7 cells on average for sizes 8, 16 and 32; Table 1
+    implies 10, 23 and 57.
 
     Parameters
     ----------

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from pymoo_gridpath.frame import Axis
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 from pymoo_gridpath.representations.base import MonotoneRepresentation
 
@@ -24,8 +28,8 @@ class AbsoluteRepresentation(MonotoneRepresentation):
     name = "absolute"
     vtype = int
 
-    def __init__(self, *args, **kwargs):
-        super().__init__(*args, **kwargs)
+    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
+        super().__init__(grid, start, goal, axis)
         self.n_var = self._n_moves
         self.xl = np.zeros(self.n_var, dtype=int)
         self.xu = np.full(self.n_var, self.frame.n_rows - 1)

@@ -36,15 +36,44 @@ class Representation(ABC):
 
     @abstractmethod
     def decode(self, X: np.ndarray) -> ColumnPaths:
-        """Return the batch of paths that the rows of X code; draws no random number."""
+        """Return the paths that rows of genes code, without drawing a random number.
+
+        Parameters
+        ----------
+        X : numpy.ndarray, shape (N, n_var)
+
+        Returns
+        -------
+        ColumnPaths
+            N paths.
+        """
 
     @abstractmethod
     def encode(self, paths) -> np.ndarray:
-        """Return the rows that code a batch of paths."""
+        """Return the rows of genes that code paths.
+
+        Parameters
+        ----------
+        paths : ColumnPaths
+            N paths.
+
+        Returns
+        -------
+        numpy.ndarray, shape (N, n_var), dtype `vtype`
+        """
 
     @abstractmethod
     def prepare(self, field: np.ndarray) -> np.ndarray:
-        """Return a field over the grid in the form that ``paths.total`` wants."""
+        """Return a field over the grid in the form that ``paths.total`` wants.
+
+        Parameters
+        ----------
+        field : numpy.ndarray, shape (height, width)
+
+        Returns
+        -------
+        numpy.ndarray
+        """
 
     @abstractmethod
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from pymoo_gridpath.frame import Axis
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 from pymoo_gridpath.representations.base import MonotoneRepresentation
 
@@ -33,8 +36,8 @@ class BinaryRepresentation(MonotoneRepresentation):
     name = "binary"
     vtype = bool
 
-    def __init__(self, *args, **kwargs):
-        super().__init__(*args, **kwargs)
+    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
+        super().__init__(grid, start, goal, axis)
         self.n_bits = math.ceil(math.log2(self.frame.n_rows))
         self.n_var = self._n_moves * (2 + self.n_bits)
         self.xl = np.zeros(self.n_var, dtype=int)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from pymoo_gridpath.frame import Axis
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 from pymoo_gridpath.representations.base import MonotoneRepresentation
 
@@ -42,8 +46,8 @@ class IntegerRepresentation(MonotoneRepresentation):
     name = "integer"
     vtype = int
 
-    def __init__(self, *args, **kwargs):
-        super().__init__(*args, **kwargs)
+    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
+        super().__init__(grid, start, goal, axis)
         frame = self.frame
         self.n_var = self._n_moves
         self.xl = np.full(self.n_var, -(frame.n_rows - 1))

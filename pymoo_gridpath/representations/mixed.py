@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from pymoo_gridpath.frame import Axis
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 from pymoo_gridpath.representations.base import MonotoneRepresentation
 
@@ -30,8 +34,8 @@ class MixedRepresentation(MonotoneRepresentation):
     name = "mixed"
     vtype = int
 
-    def __init__(self, *args, **kwargs):
-        super().__init__(*args, **kwargs)
+    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
+        super().__init__(grid, start, goal, axis)
         n, frame = self._n_moves, self.frame
         self.n_var = 2 * n
         self.n_bits = n

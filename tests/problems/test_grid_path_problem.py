@@ -49,7 +49,7 @@ def test_penalty_adds_to_every_objective(representation):
     X = genes(problem)
     out = problem.evaluate(X, return_as_dictionary=True)
     expected = plain(problem, X)
-    assert out["F"] == pytest.approx(expected[:, :3] + 100.0 * expected[:, 3:], abs=1e-6)
+    assert out["F"] == pytest.approx(expected[:, :3] + [100.0, 100.0, 4500.0] * expected[:, 3:], abs=1e-6)
     assert out["turn"] == pytest.approx(expected[:, 2]) and out["interfering_cells"] == pytest.approx(expected[:, 3])
     assert problem.n_constr == 0 and (expected[:, 3] > 0).any()
 
