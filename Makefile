@@ -28,20 +28,24 @@ docs: .setup-docs
 	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
 
 .venv/pyvenv.cfg:
-	$(PYTHON) -c 'import sys; sys.exit("pymoo_gridpath needs Python 3.11 or newer") if sys.version_info < (3, 11) else None'
-	$(PYTHON) -m venv .venv
+	@$(PYTHON) -c 'import sys; sys.exit("pymoo_gridpath needs Python 3.11 or newer") if sys.version_info < (3, 11) else None'
+	@echo "setting up a virtual environment in .venv"
+	@$(PYTHON) -m venv .venv
 
 # Stamps: made again whenever the dependencies change.
 .setup-base: pyproject.toml .venv/pyvenv.cfg
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@echo "installing what is needed"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
 .setup-test: pyproject.toml .venv/pyvenv.cfg
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@echo "installing what is needed"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	@touch $@ .setup-base
 
 .setup-docs: pyproject.toml .venv/pyvenv.cfg
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	@echo "installing what is needed"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	@touch $@ .setup-base
 
 clean:
