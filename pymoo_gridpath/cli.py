@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
+import re
 import signal
 import sys
 from collections.abc import Sequence
@@ -14,7 +16,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps import ShippedMap, load_map, shipped_maps
+from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
 from pymoo_gridpath.progress import Progress
 from pymoo_gridpath.representations import REPRESENTATIONS
 
@@ -32,9 +34,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         0; 1 if no legal path was found; 2 on bad input, with one line on standard error; 130 if Ctrl-C ended the search, with
         what was found until then written.
     """
-    arguments = _parser().parse_args(argv)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # A terminal or pipe that lacks a letter of a map's name shows its number instead.
+            stream.reconfigure(errors="backslashreplace")
+    arguments = _parser().parse_args(_join_cells(sys.argv[1:] if argv is None else argv))
     try:
-        return arguments.run(arguments)
+        code = arguments.run(arguments)
+        sys.stdout.flush()
+        return code
     except GridPathError as error:
         print(f"pymoo-gridpath: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
@@ -45,6 +53,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         # The reader has gone; keep the interpreter from complaining when it flushes.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_OK
+    except OSError as error:
+        print(f"pymoo-gridpath: the output cannot be written: {error.strerror or error}", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_BAD_INPUT
 
 
 # -- arguments ----------------------------------------------------------------------------------------------------------
@@ -121,6 +133,17 @@ def _add_map_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--corner-cutting", action="store_true", default=None, help="allow diagonal steps past occupied cells")
 
 
+def _join_cells(argv: Sequence[str]) -> list[str]:
+    """Return arguments in which a cell such as -1,0 is joined to its option, which argparse would take for another option."""
+    joined: list[str] = []
+    for text in argv:
+        if joined and joined[-1] in ("--start", "--goal") and re.fullmatch(r"-\d+,.*", text):
+            joined[-1] += f"={text}"
+        else:
+            joined.append(text)
+    return joined
+
+
 def _cell(text: str) -> tuple[int, int]:
     try:
         x, y = (int(part) for part in text.split(","))
@@ -147,15 +170,14 @@ def _natural(text: str) -> int:
 
 def _plan(arguments) -> int:
     """Plan paths from a start to a goal, print the trade-off table, and write figures and files."""
-    # Imported late, so that `maps`, `info` and --help answer at once.
+    # Imported late, since `maps`, `info` and --help do without.
     from pymoo_gridpath.algorithms import make_algorithm, minimize_runs
     from pymoo_gridpath.convergence import ConvergenceRecorder
-    from pymoo_gridpath.decision import TradeOffSet
     from pymoo_gridpath.plotting import save_figures
     from pymoo_gridpath.problems import GridPathProblem
 
-    grid, shipped = _load(arguments.map or DEFAULT_MAP, arguments)
-    start, goal = _query(arguments, grid, shipped)
+    grid, known = _load(arguments.map or DEFAULT_MAP, arguments)
+    start, goal = _query(arguments, grid, known)
     grid = _inflate(grid, arguments.radius, start, goal)
     problem = GridPathProblem(
         grid,
@@ -174,27 +196,27 @@ def _plan(arguments) -> int:
 
     print(f"{grid.name}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
     progress = Progress(arguments.runs, arguments.generations)
-    with _StopOnCtrlC() as stop, progress:
+    with _StopOnCtrlC() as stop:
 
         def observe(run, algorithm):
             progress.update(run, algorithm)
             return stop.requested
 
         termination = ("n_gen", arguments.generations)
-        results = minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)
+        with progress:
+            results = minimize_runs(
+                problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe
+            )
+        stop.searching = False
+        trade_off, files = _write_paths(results, arguments, name, stop.requested)
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
-    settings = {"algorithm": {"name": name}, "robot_radius": arguments.radius, "interrupted": stop.requested}
-    runs = [result.algorithm for result in results if result.algorithm is not None]
-    trade_off = TradeOffSet.from_results(results, settings=settings)
     print(trade_off.table())
-    files = [arguments.output / "paths.csv", arguments.output / "paths.json"]
-    trade_off.to_csv(files[0])
-    trade_off.to_json(files[1])
-    history = [run.callback for run in runs]
-    files += save_figures(trade_off, arguments.output, history=history, units=arguments.units)
-    print("written: " + ", ".join(str(file) for file in files))
+    print("written: " + ", ".join(str(file) for file in files), flush=True)
+    history = [result.algorithm.callback for result in results if result.algorithm is not None]
+    figures = save_figures(trade_off, arguments.output, history=history, units=arguments.units)
+    print("figures: " + ", ".join(str(file) for file in figures))
     if stop.requested:
         return EXIT_INTERRUPTED
     if not trade_off.feasible:
@@ -218,7 +240,7 @@ def _maps(arguments) -> int:
 
 def _info(arguments) -> int:
     """Describe a map file as it is read."""
-    grid, shipped = _load(arguments.map, arguments)
+    grid, known = _load(arguments.map, arguments)
     occupied = grid.n_occupied
     sizes = np.bincount(grid.regions.ravel())[1:]
     x, y, yaw = grid.origin
@@ -231,8 +253,8 @@ def _info(arguments) -> int:
         "free regions": f"{len(sizes)}" + (f", the largest of {sizes.max()} cells" if len(sizes) else ""),
         "corners": "may be cut" if grid.corner_cutting else "may not be cut",
     }
-    if shipped:
-        rows["query"] = f"from {_text(shipped.start)} to {_text(shipped.goal)}, robot radius {shipped.radius:g} m"
+    if known and known.start and known.goal:
+        rows["query"] = f"from {_text(known.start)} to {_text(known.goal)}, robot radius {known.radius or 0:g} m"
     for key, value in rows.items():
         print(f"{key:<13} {value}")
     return EXIT_OK
@@ -241,18 +263,19 @@ def _info(arguments) -> int:
 # -- parts --------------------------------------------------------------------------------------------------------------
 
 
-def _load(name: str, arguments) -> tuple[OccupancyGrid, ShippedMap | None]:
-    """Return the grid of a file or of a shipped map, and what is known of the latter."""
+def _load(name: str, arguments) -> tuple[OccupancyGrid, ShippedMap | TextHeader | None]:
+    """Return the grid of a file or of a shipped map, and the query that it names, if it does."""
     options = {key: getattr(arguments, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")}
     grid = load_map(name, **{key: value for key, value in options.items() if value is not None})
-    shipped = None if Path(name).is_file() else next((item for item in shipped_maps() if item.name == name), None)
-    return grid, shipped
+    if not Path(name).is_file():
+        return grid, next((item for item in shipped_maps() if item.name == name), None)
+    return grid, read_text_header(name) if map_format(name) == "a plain text map" else None
 
 
-def _query(arguments, grid: OccupancyGrid, shipped: ShippedMap | None):
-    """Return start and goal, by default those of a shipped map, checked on the map as it was read."""
-    start = arguments.start or (shipped and shipped.start)
-    goal = arguments.goal or (shipped and shipped.goal)
+def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None):
+    """Return start and goal, by default those that the map names, checked on the map as it was read."""
+    start = arguments.start or (known and known.start)
+    goal = arguments.goal or (known and known.goal)
     if not start or not goal:
         missing = " and ".join(f"--{role}" for role, cell in (("start", start), ("goal", goal)) if not cell)
         raise GridError(
@@ -271,6 +294,24 @@ def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:
     return inflated
 
 
+def _write_paths(results, arguments, name: str, interrupted: bool):
+    """Return the trade-off set of the runs, and the files that it was written to."""
+    from pymoo_gridpath.decision import TradeOffSet
+    from pymoo_gridpath.decision.provenance import grid_digest
+
+    source = _load(arguments.map or DEFAULT_MAP, arguments)[0]
+    settings = {
+        "algorithm": {"name": name},
+        "robot_radius": arguments.radius,
+        # The map that was planned on is the one grown by the radius.
+        "source_map": {"occupied_cells": source.n_occupied, "sha256": grid_digest(source)},
+        "interrupted": interrupted,
+    }
+    trade_off = TradeOffSet.from_results(results, settings=settings)
+    files = [trade_off.to_csv(arguments.output / "paths.csv"), trade_off.to_json(arguments.output / "paths.json")]
+    return trade_off, files
+
+
 def _make_directory(path: Path) -> None:
     """Make the output directory before the search, so that no result is lost for want of it."""
     try:
@@ -287,10 +328,14 @@ def _text(cell) -> str:
 
 
 class _StopOnCtrlC:
-    """While open, the first Ctrl-C asks the search to stop after the generation under way; the second interrupts at once."""
+    """While open, the first Ctrl-C asks the search to stop after the generation under way, the second ends it at once.
+
+    Once ``searching`` is False, Ctrl-C only makes a note, so that what was found is written.
+    """
 
     def __init__(self):
         self.requested = False
+        self.searching = True
 
     def __enter__(self):
         self._before = signal.signal(signal.SIGINT, self._request)
@@ -300,8 +345,10 @@ class _StopOnCtrlC:
         signal.signal(signal.SIGINT, self._before)
 
     def _request(self, number, frame):
-        if self.requested:
+        if self.requested and self.searching:
             raise KeyboardInterrupt
+        if not self.requested:
+            print("\nstopping after this generation; Ctrl-C again ends at once and loses it", file=sys.stderr)
         self.requested = True
 
 

@@ -6,6 +6,9 @@ can print it as it is.
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
+
 
 class GridPathError(ValueError):
     """Base of every error that this package raises about its input."""
@@ -45,3 +48,10 @@ class MapError(GridPathError):
 
 class CapabilityError(GridPathError):
     """An algorithm was asked for something that it cannot do."""
+
+
+def nearest(name: object, known: Iterable[str], otherwise: str = "expected one of") -> str:
+    """Return the part of a message that names the known name nearest to an unknown one, or else all of them."""
+    known = list(known)
+    near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
+    return f"did you mean {near[0]!r}?" if near else f"{otherwise} {', '.join(known)}"

@@ -45,7 +45,7 @@ def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5) -> np.ndarray
     if not (math.isfinite(variance) and variance > 0):
         raise GridError(f"variance of the potential is {variance}, expected a positive number of squared cells")
     # The bell is separable; beyond this reach it is below 2e-17, far under the rounding.
-    reach = min(math.ceil(math.sqrt(2.0 * variance * 38.0)), max(grid.shape))
+    reach = math.ceil(min(math.sqrt(76.0 * variance), max(grid.shape)))
     kernel = np.exp(-(np.arange(-reach, reach + 1.0) ** 2) / (2.0 * variance))
     field = grid.occupied.astype(float)
     for axis in (0, 1):

@@ -54,8 +54,6 @@ class OccupancyGrid:
     array([1.25, 0.75])
     """
 
-    __slots__ = ("__dict__", "_corner_cutting", "_name", "_occupied", "_origin", "_resolution")
-
     def __init__(
         self,
         occupied: ArrayLike,
@@ -74,6 +72,8 @@ class OccupancyGrid:
         if len(pose) != 3 or not all(math.isfinite(v) for v in pose):
             raise GridError(f"origin is {origin!r}, expected (x, y) or (x, y, yaw) in metres and radians")
         self._origin = pose
+        if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in pose)):
+            raise GridError(f"resolution {resolution} and origin {origin!r} put the map beyond what numbers can hold")
         if not isinstance(corner_cutting, bool | np.bool_):
             raise GridError(f"corner_cutting is {corner_cutting!r}, expected True or False")
         self._corner_cutting = bool(corner_cutting)
@@ -179,7 +179,10 @@ class OccupancyGrid:
         ys, xs = np.nonzero(~self._occupied)
         if len(xs) == 0:
             return None
-        k = int(np.argmin((xs - cell[0]) ** 2 + (ys - cell[1]) ** 2))
+        # Squares of larger numbers would overflow.
+        far = 10**6
+        x, y = (min(max(int(v), -far), size + far) for v, size in zip(cell, (self.width, self.height), strict=True))
+        k = int(np.argmin((xs - x) ** 2 + (ys - y) ** 2))
         return int(xs[k]), int(ys[k])
 
     def check_cell(self, cell: Sequence[int], role: str = "cell") -> Cell:
@@ -300,7 +303,7 @@ class OccupancyGrid:
         if not (math.isfinite(radius) and radius >= 0):
             raise GridError(f"robot radius is {radius}, expected a number of metres, zero or more")
         cells = radius / self._resolution
-        reach = min(math.ceil(cells + 0.5), max(self.shape))
+        reach = math.ceil(min(cells + 0.5, max(self.shape)))
         offset = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0) ** 2
         disc = np.sqrt(offset[:, None] + offset[None, :]) < cells - 1e-9
         if disc.sum() <= 1:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, nearest
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import TURN_UNIT
@@ -139,9 +138,7 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
     for item in objectives:
         if isinstance(item, str):
             if item not in OBJECTIVES:
-                near = difflib.get_close_matches(item, OBJECTIVES, n=1)
-                hint = f"did you mean {near[0]!r}?" if near else f"expected some of {', '.join(OBJECTIVES)}"
-                raise GridPathError(f"there is no objective {item!r}; {hint}")
+                raise GridPathError(f"there is no objective {item!r}; {nearest(item, OBJECTIVES)}")
             item = OBJECTIVES[item]()
         elif not isinstance(item, Objective):
             raise GridPathError(f"objective {item!r} is neither a name nor an Objective")

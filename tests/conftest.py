@@ -2,7 +2,6 @@
 
 import os
 import sys
-from pathlib import Path
 
 import matplotlib
 
@@ -15,5 +14,3 @@ from hypothesis import settings
 
 settings.register_profile("default", deadline=None)
 settings.load_profile("default")
-
-SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"

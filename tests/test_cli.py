@@ -59,10 +59,36 @@ def test_same_seed_writes_the_same_paths(tmp_path, free_map):
     assert contents[0] == contents[1]
 
 
-def test_plan_without_a_map_plans_a_shipped_one(tmp_path):
-    done = run("plan", *FAST, cwd=tmp_path)
-    assert done.returncode in (0, 1), done.stderr
+def test_plan_without_a_map_finds_legal_paths_on_a_shipped_one(tmp_path):
+    """What `make demo` runs, with every default."""
+    done = run("plan", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
     assert "warehouse" in done.stdout and (tmp_path / "gridpath-out" / "map.png").exists()
+
+
+def test_plan_takes_the_query_of_a_text_map(tmp_path):
+    path = tmp_path / "mine.txt"
+    path.write_text("start: 1 0\ngoal: 4 2\n\n......\n..##..\n......\n")
+    assert run("plan", path, *FAST, "-o", tmp_path / "out").returncode == 0
+    query = json.loads((tmp_path / "out" / "paths.json").read_text())["query"]
+    assert query == {"start": [1, 0], "goal": [4, 2]}
+
+
+def test_files_say_which_map_was_read_and_which_was_planned_on(tmp_path, free_map):
+    query = ["--start", "0,0", "--goal", "5,3"]
+    assert run("plan", free_map, *query, "--radius", "0.6", *FAST, "-o", tmp_path / "out").returncode == 0
+    document = json.loads((tmp_path / "out" / "paths.json").read_text())
+    assert document["settings"]["robot_radius"] == 0.6
+    assert document["settings"]["source_map"]["occupied_cells"] == 2
+    assert document["map"]["occupied_cells"] == load_map(free_map).inflate(0.6).n_occupied > 2
+
+
+def test_figures_of_an_earlier_set_do_not_stay(tmp_path, free_map):
+    query = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "-o", tmp_path / "out"]
+    assert run(*query, "--objectives", "length,vulnerability,turn").returncode == 0
+    assert (tmp_path / "out" / "front_plane.png").exists()
+    assert run(*query, "--objectives", "length").returncode == 0
+    assert {file.stem for file in (tmp_path / "out").iterdir()} == {"paths", "map", "convergence"}
 
 
 @pytest.mark.parametrize("algorithm", ["spea2", "moea/d", "NSGA-III"])
@@ -94,6 +120,12 @@ def test_plan_with_one_objective(tmp_path, free_map):
         (["plan", "MAP", "--start", "0;0", "--goal", "5,3"], "expected X,Y"),
         (["plan", "MAP", "--start", "2,2", "--goal", "5,3"], "start (2, 2) lies on an obstacle"),
         (["plan", "MAP", "--start", "0,0", "--goal", "6,3"], "goal (6, 3) lies outside"),
+        (["plan", "MAP", "--start", "-1,0", "--goal", "5,3"], "start (-1, 0) lies outside"),
+        (["plan", "MAP", "--start", "9" * 30 + ",0", "--goal", "5,3"], "lies outside"),
+        (["plan", "paper16", "--resolution", "1e-300", "--radius", "1e10"], "robot's radius"),
+        (["plan", "paper16", "--resolution", "1e308"], "beyond what numbers can hold"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--penalty", "5", "--obstacles", "constraint"], "penalty is for"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "3", "--algorithm", "gde3"], "at least 4"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "nsga9"], "did you mean"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "MOPSO_CD"], "MOPSO_CD"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "invalid choice: 'real'"),
@@ -165,10 +197,43 @@ def test_ctrl_c_keeps_the_front_found_so_far(tmp_path):
     assert document["paths"] and "shortest" in stdout
 
 
-def test_closed_pipe_is_no_error(tmp_path, free_map):
-    command = f"{sys.executable} -m pymoo_gridpath.cli maps | true"
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_closed_pipe_is_no_error_and_loses_no_file(tmp_path, free_map, unbuffered):
+    environment = {**os.environ, "PYTHONUNBUFFERED": unbuffered}
+    program = f"{sys.executable} -m pymoo_gridpath.cli"
+    plan = f"plan {free_map} --start 0,0 --goal 5,3 {' '.join(FAST)} -o {tmp_path / 'out'}"
+    for command in (f"{program} maps | true", f"{program} {plan} | head -1"):
+        done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False, env=environment)
+        assert done.stderr == ""
+    assert (tmp_path / "out" / "paths.json").exists()
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs the device /dev/full")
+def test_full_disk_is_said_in_one_line():
+    command = f"{sys.executable} -m pymoo_gridpath.cli maps > /dev/full"
     done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
-    assert "Traceback" not in done.stderr and "Exception" not in done.stderr
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "cannot be written" in done.stderr
+
+
+def test_letters_that_the_terminal_lacks_are_no_error(tmp_path):
+    path = tmp_path / "map.txt"
+    path.write_text("name: K\u00fcche\n\n...\n...\n", encoding="utf-8")
+    done = run("info", path, env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    assert done.returncode == 0 and "K\\xfcche" in done.stdout
+
+
+def test_second_ctrl_c_ends_at_once(tmp_path):
+    command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", "office", "--generations", "100000", "--pop-size", "2000"]
+    process = subprocess.Popen([*command, "-o", str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(1)
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "stopping after this generation" in stderr and "Traceback" not in stderr
 
 
 def test_maps_lists_every_shipped_map(capsys):

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import inspect
 from typing import Any
 
-from pymoo_gridpath.errors import CapabilityError
+from pymoo_gridpath.errors import CapabilityError, nearest
 
 # Arguments that a constructor lists, or hands on, and then sets itself or ignores.
 _EVERYWHERE = {"advance_after_initial_infill", "mating"}
@@ -68,9 +67,7 @@ def check(name: str, given, accepted) -> None:
     """
     for key in given:
         if key not in accepted:
-            near = difflib.get_close_matches(key, accepted, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(sorted(accepted))}"
-            raise CapabilityError(f"{name} takes no argument {key!r}; {hint}")
+            raise CapabilityError(f"{name} takes no argument {key!r}; {nearest(key, sorted(accepted), 'it takes')}")
 
 
 def fresh_defaults(accepted: dict[str, Any]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from pymoo.algorithms.moo.nsde import VariantDE
 from pymoo.core.algorithm import Algorithm
+from pymoo.core.duplicate import NoDuplicateElimination
 from pymoo.util.reference_direction import (
     UniformReferenceDirectionFactory,
     get_number_of_uniform_points,
@@ -119,9 +120,12 @@ def refuse_problem(row: Capability, problem) -> None:
             f"{row.name} needs at least {row.min_objectives} objectives, the problem has {problem.n_obj}; use 'GA' for one"
         )
     if row.max_objectives is not None and problem.n_obj > row.max_objectives:
-        raise CapabilityError(f"{row.name} takes at most {row.max_objectives} objectives, the problem has {problem.n_obj}")
+        most = "one objective" if row.max_objectives == 1 else f"at most {row.max_objectives} objectives"
+        raise CapabilityError(f"{row.name} takes {most}, the problem has {problem.n_obj}")
     if problem.has_constraints() and not row.constraints:
         raise CapabilityError(f"{row.name} cannot solve problems with constraints; use obstacles='penalty'")
+    if row.name == "OmniOptimizer" and (problem.xl == problem.xu).all():
+        raise CapabilityError("OmniOptimizer never ends on a problem with a single solution, and this one has no gene to vary")
 
 
 def build(
@@ -133,8 +137,9 @@ def build(
     **kwargs,
 ) -> Algorithm:
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
-    if pop_size < 1:
-        raise CapabilityError(f"pop_size is {pop_size}, expected a positive number of individuals")
+    least = _least_pop_size(row, kwargs)
+    if pop_size < least:
+        raise CapabilityError(f"pop_size is {pop_size}, expected at least {least} for {row.name}")
     cls = _class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     # These two classes need not be told: smoothness is an argument of this function.
@@ -158,9 +163,25 @@ def build(
     if termination is not None:
         # Several constructors overwrite the one they are given.
         algorithm.termination = termination
+    if row.name == "CTAEA":
+        # It fills its archive from the first population and never ends if duplicates are missing there.
+        algorithm.initialization.eliminate_duplicates = NoDuplicateElimination()
     if isinstance(algorithm.__dict__.get("mating"), VariantDE):
         algorithm.mating = _whole_number_mating(algorithm)
     return algorithm
+
+
+def _least_pop_size(row: Capability, given: Mapping[str, Any]) -> int:
+    """Return the smallest population with which an algorithm ends."""
+    if row.name == "OmniOptimizer":
+        return 2
+    if row.operators:
+        return 1
+    # Differential evolution draws distinct parents: the target, the base, and two for each difference.
+    match = re.fullmatch(r"DE/(.+)/(\d+)/.+", str(given.get("variant", "DE/rand/1/bin")))
+    if match is None:
+        return 1
+    return 2 + 2 * (int(match[2]) + ("-to-" in match[1]))
 
 
 def reference_directions(n_obj: int, n_points: int) -> np.ndarray:

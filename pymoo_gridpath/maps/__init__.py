@@ -28,6 +28,7 @@ __all__ = [
     "TextHeader",
     "load_map",
     "load_shipped",
+    "map_format",
     "read_image",
     "read_movingai",
     "read_npy",
@@ -94,7 +95,7 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
     """
     name = os.fspath(path)
     shipped = not os.path.isfile(path) and (name in shipped_names() or _is_bare(name))
-    kind = "a plain text map" if shipped else _sniff(path)
+    kind = "a plain text map" if shipped else map_format(path)
     reader = _FORMATS[kind]
     options = {key: value for key, value in options.items() if value is not None}
     known = list(inspect.signature(reader).parameters)[1:]
@@ -109,8 +110,14 @@ def _is_bare(name: str) -> bool:
     return bool(name) and not os.path.exists(name) and Path(name).name == name and not Path(name).suffix
 
 
-def _sniff(path: str | os.PathLike[str]) -> str:
-    """Return the format of a file as a key of `_FORMATS`."""
+def map_format(path: str | os.PathLike[str]) -> str:
+    """Return the format of a map file in words, such as "a ROS map" or "a plain text map".
+
+    Raises
+    ------
+    MapError
+        If there is no such file, or it is of no known format.
+    """
     file = require_file(path)
     try:
         with open(file, "rb") as stream:

@@ -7,7 +7,7 @@ from pymoo.core.crossover import Crossover
 from pymoo.core.variable import Real
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.operators.parameters import number
+from pymoo_gridpath.operators.parameters import in_range, number, one_or_two
 
 
 class DiscreteSBX(Crossover):
@@ -36,7 +36,9 @@ class DiscreteSBX(Crossover):
     """
 
     def __init__(self, eta: float = 10.0, prob_var: float = 0.5, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
-        super().__init__(2, n_offsprings, prob=prob, **kwargs)
+        super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
+        in_range("eta", eta, 0, 1000)
+        in_range("prob_var", prob_var, 0, 1)
         self.eta = Real(eta, bounds=(3.0, 30.0), strict=(0.0, None))
         self.prob_var = Real(prob_var, bounds=(0.1, 0.9), strict=(0.0, 1.0))
 
@@ -98,7 +100,7 @@ class PointCrossover(Crossover):
     """
 
     def __init__(self, n_points: int, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
-        super().__init__(2, n_offsprings, prob=prob, **kwargs)
+        super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
         if n_points < 1:
             raise GridPathError(f"n_points is {n_points}, expected one or more cuts")
         self.n_points = n_points
@@ -152,7 +154,7 @@ class MixedCrossover(Crossover):
     """
 
     def __init__(self, eta: float = 10.0, prob_var: float = 0.5, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
-        super().__init__(2, n_offsprings, prob=prob, **kwargs)
+        super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
         self.bits = SinglePointCrossover()
         self.integers = DiscreteSBX(eta, prob_var)
 

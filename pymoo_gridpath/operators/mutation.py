@@ -7,7 +7,7 @@ from pymoo.core.mutation import Mutation
 from pymoo.core.variable import Real
 
 from pymoo_gridpath.operators.crossover import bits_of
-from pymoo_gridpath.operators.parameters import number
+from pymoo_gridpath.operators.parameters import in_range, number
 
 
 class DiscretePolynomialMutation(Mutation):
@@ -34,8 +34,9 @@ class DiscretePolynomialMutation(Mutation):
     """
 
     def __init__(self, eta: float = 20.0, prob_var: float | None = None, prob: float = 1.0, **kwargs):
-        super().__init__(prob=prob, prob_var=prob_var, **kwargs)
-        self.eta = Real(eta, bounds=(3.0, 30.0), strict=(0.0, 100.0))
+        super().__init__(prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1), **kwargs)
+        in_range("eta", eta, 0, 1000)
+        self.eta = Real(eta, bounds=(3.0, 30.0), strict=(0.0, 1000.0))
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
         return self.mutate(X, problem.xl, problem.xu, number(self.get_prob_var(problem)), random_state)
@@ -77,9 +78,9 @@ class BitwiseMutation(Mutation):
     Parameters
     ----------
     prob_var : float, optional
-        Rate at the first generation; 1 / n_var by default.
+        Rate at the start of the run; 1 / n_var by default.
     final : float, default 0.2
-        Share of that rate left at the last generation: a fifth, in the paper.
+        Share of that rate left at the end of the run: a fifth, in the paper.
     prob : float, default 1.0
         Probability of an individual to be mutated at all.
 
@@ -95,8 +96,8 @@ class BitwiseMutation(Mutation):
     """
 
     def __init__(self, prob_var: float | None = None, final: float = 0.2, prob: float = 1.0, **kwargs):
-        super().__init__(prob=prob, prob_var=prob_var, **kwargs)
-        self.final = final
+        super().__init__(prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1), **kwargs)
+        self.final = in_range("final", final, 0, 1)
 
     def _do(self, problem, X, *args, random_state=None, algorithm=None, **kwargs):
         return self.flip(X, number(self.get_prob_var(problem)) * self.decay(algorithm), random_state)
@@ -131,7 +132,7 @@ class MixedMutation(Mutation):
     """
 
     def __init__(self, eta: float = 20.0, prob_var: float | None = None, final: float = 0.2, prob: float = 1.0, **kwargs):
-        super().__init__(prob=prob, prob_var=prob_var, **kwargs)
+        super().__init__(prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1), **kwargs)
         self.bits = BitwiseMutation(final=final)
         self.integers = DiscretePolynomialMutation(eta)
 

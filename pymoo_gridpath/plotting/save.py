@@ -21,6 +21,9 @@ from pymoo_gridpath.plotting.style import STYLE
 _METADATA: dict[str, dict] = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 
 
+_NAMES = ("map", "front", "front_plane", "convergence")
+
+
 def save_figures(
     trade_off,
     directory: str | os.PathLike[str],
@@ -52,7 +55,8 @@ def save_figures(
     Returns
     -------
     list of pathlib.Path
-        The written files. They hold no date: the same set gives the same bytes.
+        The written files. They hold no date: the same set gives the same bytes. Figures of these names that another set has
+        left in the directory are removed.
 
     Raises
     ------
@@ -68,6 +72,10 @@ def save_figures(
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise GridPathError(f"{directory}: the folder cannot be made ({error.strerror}), expected a writable place") from None
+    for name in _NAMES:
+        for form in _METADATA:
+            # Of an earlier set, and no longer true.
+            (directory / f"{name}.{form}").unlink(missing_ok=True)
     written = []
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         for name, figure in _figures(trade_off, history, reference, units).items():

@@ -104,12 +104,16 @@ class GridPathProblem(Problem):
         self.grid = grid
         self.start, self.goal = grid.check_query(start, goal)
         self.objectives = make_objectives(objectives)
+        if obstacles == "constraint" and penalty is not None:
+            raise GridPathError("penalty is for obstacles='penalty' and 'limit', not for obstacles='constraint'")
         self.obstacles = obstacles
         self.penalty = float(self._default_penalty() if penalty is None else penalty)
         self.potential_limit = potential_limit
         self._check_obstacles()
         if isinstance(representation, str):
             representation = make_representation(representation, grid, self.start, self.goal, axis)
+        else:
+            self._check_representation(representation, axis)
         self.representation = representation
         fields = [objective.field(grid) for objective in self.objectives]
         self._sums = [None if field is None else representation.prepare(field) for field in fields]
@@ -136,6 +140,14 @@ class GridPathProblem(Problem):
             )
         elif self.potential_limit is None or not self.potential_limit > 0:
             raise GridPathError(f"potential_limit is {self.potential_limit}, expected a positive number with obstacles='limit'")
+
+    def _check_representation(self, representation: Representation, axis: Axis) -> None:
+        if (representation.grid, representation.start, representation.goal) != (self.grid, self.start, self.goal):
+            raise GridPathError(
+                f"the {representation.name} representation was made for another grid, start or goal than the problem has"
+            )
+        if axis != "auto":
+            raise GridPathError(f"axis={axis!r} is for a representation by name; give it to the representation instead")
 
     def _default_penalty(self) -> float:
         return self.grid.occupied.size if self.obstacles == "limit" else DEFAULT_PENALTY

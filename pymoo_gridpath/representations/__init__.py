@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, nearest
 from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.representations.absolute import AbsoluteRepresentation
@@ -42,9 +41,7 @@ def make_representation(
         If the query cannot be used, see `MonotoneFrame`.
     """
     if name not in REPRESENTATIONS:
-        near = difflib.get_close_matches(str(name), REPRESENTATIONS, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"expected one of {', '.join(REPRESENTATIONS)}"
-        raise GridPathError(f"there is no representation {name!r}; {hint}")
+        raise GridPathError(f"there is no representation {name!r}; {nearest(name, REPRESENTATIONS)}")
     return REPRESENTATIONS[name](grid, start, goal, axis)
 
 

@@ -38,7 +38,7 @@ class AbsoluteRepresentation(MonotoneRepresentation):
         return np.diff(self.exit_rows(X), axis=1, prepend=self.frame.start_row)
 
     def exit_rows(self, X: np.ndarray) -> np.ndarray:
-        return np.clip(self.genes(X), 0, self.frame.n_rows - 1)
+        return self.genes(X)
 
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the genes of paths, the inverse of `decode` as in `IntegerRepresentation.encode`, int, shape (N, n_var)."""

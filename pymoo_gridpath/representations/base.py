@@ -9,7 +9,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.frame import Axis, MonotoneFrame
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 
 
@@ -26,6 +26,9 @@ class Representation(ABC):
         Number of genes.
     xl, xu : numpy.ndarray of int, shape (n_var,)
         Bounds of the genes, both included.
+    grid : OccupancyGrid
+    start, goal : (int, int)
+        The query that it codes paths for.
     """
 
     name: str
@@ -33,6 +36,9 @@ class Representation(ABC):
     n_var: int
     xl: np.ndarray
     xu: np.ndarray
+    grid: OccupancyGrid
+    start: Cell
+    goal: Cell
 
     @abstractmethod
     def decode(self, X: np.ndarray) -> ColumnPaths:
@@ -80,13 +86,26 @@ class Representation(ABC):
         """Return X with genes rewritten where a path would leave the grid."""
 
     def genes(self, X: np.ndarray) -> np.ndarray:
-        """Return X as int64 within the bounds; real numbers, from operators that know no integers, are rounded."""
+        """Return X as int64 within the bounds; real numbers, from operators that know no integers, are rounded.
+
+        Raises
+        ------
+        GridPathError
+            If X has another number of columns or holds what is no number.
+        """
         X = np.atleast_2d(X)
         if X.shape[1] != self.n_var:
             raise GridPathError(f"X has {X.shape[1]} columns, expected {self.n_var} genes of the {self.name} representation")
-        if X.dtype.kind in "iub":
-            return X.astype(np.int64, copy=False)
-        return np.clip(np.rint(X.astype(float)), self.xl, self.xu).astype(np.int64)
+        if X.dtype.kind == "b":
+            return X.astype(np.int64)
+        if X.dtype.kind not in "iu":
+            X = X.astype(float)
+            if not np.isfinite(X).all():
+                raise GridPathError(
+                    f"X holds values that are no finite numbers, expected genes of the {self.name} representation"
+                )
+            X = np.rint(X)
+        return np.clip(X, self.xl, self.xu).astype(np.int64, copy=False)
 
 
 class MonotoneRepresentation(Representation):
@@ -112,6 +131,7 @@ class MonotoneRepresentation(Representation):
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
         self.frame = MonotoneFrame(grid, start, goal, axis)
+        self.grid, self.start, self.goal = grid, self.frame.start, self.frame.goal
 
     def prepare(self, field: np.ndarray) -> np.ndarray:
         """Return a field over the grid as prefix sums up each column of the frame."""
@@ -168,7 +188,7 @@ class MonotoneRepresentation(Representation):
         """
         X = self.genes(X).astype(self.vtype)
         moves = self.moves(X)
-        outside = np.flatnonzero(_leaves_grid(moves, self.frame))
+        outside = _rows_and_outside(moves, self.frame)[1]
         if len(outside):
             fixed = _fix_edges(moves[outside], self.frame, random_state)
             X[outside] = self._rewrite(X[outside], moves[outside], fixed)
@@ -179,16 +199,16 @@ class MonotoneRepresentation(Representation):
         """Return X with the genes changed where ``fixed`` moves differ from ``moves``."""
 
 
-def _leaves_grid(moves: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
-    rows = frame.start_row + np.cumsum(moves, axis=1)
-    return (rows.min(axis=1) < 0) | (rows.max(axis=1) >= frame.n_rows)
+def _rows_and_outside(moves: np.ndarray, frame: MonotoneFrame) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rows that moves lead to, and the indices of the paths among which one lies off the grid."""
+    rows = np.cumsum(moves, axis=1, dtype=np.int32)
+    rows += frame.start_row
+    return rows, np.flatnonzero((rows.min(axis=1) < 0) | (rows.max(axis=1) >= frame.n_rows))
 
 
 def _rows_within(moves: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
     """Add up moves from the start row, stopping each at the edge of the grid."""
-    rows = np.cumsum(moves, axis=1, dtype=np.int32)
-    rows += frame.start_row
-    outside = np.flatnonzero((rows.min(axis=1) < 0) | (rows.max(axis=1) >= frame.n_rows))
+    rows, outside = _rows_and_outside(moves, frame)
     if len(outside):
         row = np.full(len(outside), frame.start_row)
         for k in range(moves.shape[1]):

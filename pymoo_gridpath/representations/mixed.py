@@ -59,8 +59,8 @@ class MixedRepresentation(MonotoneRepresentation):
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the genes of paths, int, shape (N, n_var).
 
-        The inverse of `decode` but for the redundancy of the coding: the bit of a horizontal step is always 1. Paths
-        that have no code of their own are treated as in `IntegerRepresentation.encode`.
+        The inverse of `decode` but for the redundancy of the coding: the bit of a horizontal step is 1, and 0 for the
+        last step. Paths that have no code of their own are treated as in `IntegerRepresentation.encode`.
         """
         moves = np.diff(paths.leave[:, :-1], axis=1, prepend=self.frame.start_row)
         last = paths.enter[:, -1:] != paths.leave[:, -2:-1]

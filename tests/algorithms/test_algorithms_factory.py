@@ -64,7 +64,7 @@ def test_unknown_name(name, near, make_problem):
         ("NSGA3", {"ref_dirs": np.eye(3)}, "ref_dirs has shape"),
         ("NSGA3", {"ref_dirs": np.eye(2), "pop_size": 1}, "ref_dirs has 2 rows, expected 2 to pop_size = 1"),
         ("CTAEA", {"crossover": DiscreteSBX()}, "CTAEA needs a crossover that gives one child"),
-        ("GA", {}, "GA takes at most 1 objectives, the problem has 2"),
+        ("GA", {}, "GA takes one objective, the problem has 2"),
         ("CMOPSO", {}, "CMOPSO moves particles in a continuous space, and grid codings are discrete"),
     ],
 )

@@ -278,3 +278,21 @@ def test_array_mating_gives_up_where_nothing_new_can_be_made():
     o = paper_operators(p)
     mating = ArrayMating(SmoothnessTournament(), o["crossover"], o["mutation"], o["repair"], n_max_iterations=5)
     assert len(mating.do(p, pop, 4, random_state=np.random.default_rng(0))) == 0
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: DiscreteSBX(eta=-2), "eta is -2"),
+        (lambda: DiscreteSBX(prob_var=2), "prob_var is 2"),
+        (lambda: DiscreteSBX(n_offsprings=3), "n_offsprings is 3, expected 1 or 2"),
+        (lambda: TwoPointCrossover(prob=-1), "prob is -1"),
+        (lambda: PointCrossover(0), "n_points is 0"),
+        (lambda: DiscretePolynomialMutation(eta=1e5), "eta is 100000"),
+        (lambda: BitwiseMutation(prob_var=2), "prob_var is 2"),
+        (lambda: MixedMutation(final=-1), "final is -1"),
+    ],
+)
+def test_parameters_out_of_range_are_refused(make, message):
+    with pytest.raises(GridPathError, match=message):
+        make()

@@ -15,6 +15,7 @@ from pymoo_gridpath.objectives import Length, Objective, Vulnerability
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.problems import grid_path as module
+from pymoo_gridpath.representations import make_representation
 
 GRID = random_dense_grid(12, 0.3, 4)
 START, GOAL = (0, 0), (11, 11)
@@ -111,6 +112,7 @@ def test_objectives_of_ones_own():
         ({"obstacles": "wall"}, "obstacles is 'wall', expected one of penalty, constraint, limit"),
         ({"penalty": -1}, "penalty is -1"),
         ({"obstacles": "limit"}, "potential_limit is None, expected a positive number"),
+        ({"obstacles": "constraint", "penalty": 5.0}, "penalty is for obstacles='penalty' and 'limit'"),
         ({"potential_limit": 3.0}, "potential_limit is for obstacles='limit'"),
         ({"obstacles": "limit", "potential_limit": 1.0, "objectives": ("length",)}, "limits the vulnerability"),
         ({"start": (-1, 0)}, r"start \(-1, 0\) lies outside"),
@@ -120,6 +122,27 @@ def test_objectives_of_ones_own():
 def test_bad_arguments_are_refused_in_words(options, message):
     with pytest.raises(GridPathError, match=message):
         GridPathProblem(**({"grid": GRID, "start": START, "goal": GOAL} | options))
+
+
+def test_representation_of_another_query_is_refused():
+    coding = make_representation("integer", GRID, START, GOAL)
+    assert GridPathProblem(GRID, START, GOAL, coding).representation is coding
+    with pytest.raises(GridPathError, match="another grid, start or goal"):
+        GridPathProblem(GRID, GOAL, START, coding)
+    with pytest.raises(GridPathError, match="give it to the representation"):
+        GridPathProblem(GRID, START, GOAL, coding, axis="y")
+
+
+def test_genes_that_are_no_numbers_are_refused():
+    problem = GridPathProblem(GRID, START, GOAL)
+    with pytest.raises(GridPathError, match="no finite numbers"):
+        problem.evaluate(np.full((2, problem.n_var), np.nan))
+
+
+def test_genes_beyond_their_bounds_count_as_the_bounds():
+    problem = GridPathProblem(GRID, START, GOAL)
+    X = np.full((1, problem.n_var), 99)
+    assert np.array_equal(problem.evaluate(X), problem.evaluate(np.full((1, problem.n_var), 11)))
 
 
 def test_unreachable_goal_is_refused():
