@@ -1,6 +1,7 @@
 """What each of pymoo 0.6.2's multi-objective algorithms can do on a grid.
 
-``tests/algorithms/test_algorithms_conformance.py`` measures every claim.
+``tests/algorithms/test_algorithms_conformance.py`` checks the claims on small grids; of the algorithms that are
+refused on every grid, only the reason for it.
 """
 
 from __future__ import annotations
