@@ -176,6 +176,8 @@ def _plan(arguments) -> int:
     from pymoo_gridpath.plotting import save_figures
     from pymoo_gridpath.problems import GridPathProblem
 
+    if arguments.obstacles == "limit" and arguments.potential_limit is None:
+        raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
     grid, known = _load(arguments.map or DEFAULT_MAP, arguments)
     start, goal = _query(arguments, grid, known)
     grid = _inflate(grid, arguments.radius, start, goal)
@@ -213,6 +215,10 @@ def _plan(arguments) -> int:
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
     print(trade_off.table())
+    x, y = goal
+    print(f"for comparison, the shortest of all paths on this grid has length {grid.shortest_lengths(start)[y, x]:.3f}")
+    if len(results) > 1:
+        print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(str(file) for file in files), flush=True)
     history = [result.algorithm.callback for result in results if result.algorithm is not None]
     figures = save_figures(trade_off, arguments.output, history=history, units=arguments.units)
@@ -221,7 +227,8 @@ def _plan(arguments) -> int:
         return EXIT_INTERRUPTED
     if not trade_off.feasible:
         print(
-            "pymoo-gridpath: no legal path was found; a larger --pop-size, more --generations or --runs may find one",
+            "pymoo-gridpath: no legal path was found though one exists; a larger --pop-size, more --generations or --runs, or "
+            "--obstacles constraint may find one",
             file=sys.stderr,
         )
         return EXIT_NO_PATH
@@ -294,6 +301,10 @@ def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:
     return inflated
 
 
+def _found_legal(result) -> bool:
+    return bool(np.any(np.asarray(result.pop.get("interfering_cells")) == 0))
+
+
 def _write_paths(results, arguments, name: str, interrupted: bool):
     """Return the trade-off set of the runs, and the files that it was written to."""
     from pymoo_gridpath.decision import TradeOffSet
@@ -314,6 +325,8 @@ def _write_paths(results, arguments, name: str, interrupted: bool):
 
 def _make_directory(path: Path) -> None:
     """Make the output directory before the search, so that no result is lost for want of it."""
+    if path.exists() and not path.is_dir():
+        raise GridPathError(f"the output directory {path} is a file, expected a folder or a new name")
     try:
         path.mkdir(parents=True, exist_ok=True)
         writable = os.access(path, os.W_OK)

@@ -48,6 +48,9 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
         assert path["cells"][0] == [0, 0] and path["cells"][-1] == [5, 3] and path["interfering_cells"] == 0
         assert {"points", "length", "vulnerability", "turn", "names"} <= set(path)
     assert document["seed"] == 4
+    shortest = load_map(free_map).shortest_lengths((0, 0))[3, 5]
+    assert f"shortest of all paths on this grid has length {shortest:.3f}" in done.stdout
+    assert min(path["length"] for path in paths) >= shortest - 1e-9
 
 
 def test_same_seed_writes_the_same_paths(tmp_path, free_map):
@@ -102,6 +105,7 @@ def test_plan_takes_other_algorithms_and_settings(tmp_path, free_map, algorithm)
     document = json.loads((tmp_path / "out" / "paths.json").read_text())
     assert document["map"]["resolution"] == 0.5 and document["map"]["corner_cutting"] is True
     assert document["seed"] == [1, 2]
+    assert "of 2 runs found a legal path" in done.stdout
 
 
 def test_plan_with_one_objective(tmp_path, free_map):
@@ -136,7 +140,9 @@ def test_plan_with_one_objective(tmp_path, free_map):
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "ten"], "'ten' is not a whole number"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--potential-limit", "3"], "potential_limit is for"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--threshold", "0.5"], "threshold"),
-        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "-o", "MAP"], "output directory"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "-o", "MAP"], "is a file"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "-o", "MAP/deeper"], "output directory"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--obstacles", "limit"], "needs --potential-limit P0"),
         (["info", "broken.yaml"], "broken.yaml"),
         (["info"], "required: MAP"),
         (["fly"], "invalid choice"),
@@ -146,7 +152,7 @@ def test_plan_with_one_objective(tmp_path, free_map):
 def test_bad_input_gives_one_line_and_exit_code_2(tmp_path, free_map, arguments, message, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "broken.yaml").write_text("- not\n- a mapping\n")
-    arguments = [str(free_map) if a == "MAP" else a for a in arguments]
+    arguments = [a.replace("MAP", str(free_map)) for a in arguments]
     try:
         code = main(arguments)
     except SystemExit as error:

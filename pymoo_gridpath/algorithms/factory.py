@@ -100,7 +100,7 @@ def find_capability(name: str) -> Capability:
     rows = {_key(row.name): row for row in CAPABILITIES.values()}
     key = _key(name)
     if key not in rows:
-        near = difflib.get_close_matches(key, rows, n=1, cutoff=0.4)
+        near = difflib.get_close_matches(key, rows, n=1, cutoff=0.6)
         hint = f"did you mean {rows[near[0]].name!r}?" if near else f"expected one of {', '.join(CAPABILITIES)}"
         raise CapabilityError(f"there is no algorithm {name!r}; {hint}")
     return rows[key]

@@ -9,6 +9,7 @@ from pymoo.core.mating import Mating
 from pymoo.core.population import Population
 
 from pymoo_gridpath.operators.duplicates import row_keys
+from pymoo_gridpath.operators.individuals import genes
 from pymoo_gridpath.operators.parameters import number
 
 # Rounds of mating that one selection serves. Reading the attributes of a population costs more than its tournaments do.
@@ -37,7 +38,7 @@ class ArrayMating(Mating):
 
     def do(self, problem, pop, n_offsprings, random_state=None, n_max_iterations=None, **kwargs):
         assert random_state is not None
-        X = pop.get("X")
+        X = genes(pop)
         seen = set(row_keys(X))
         offspring: list[np.ndarray] = []
         missing = n_offsprings

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from pymoo.operators.selection.tournament import TournamentSelection
 
+from pymoo_gridpath.operators.individuals import attributes, violations
+
 
 class SmoothnessTournament(TournamentSelection):
     """The modified NSGA-II's binary tournament: rank, then smoothness, then crowding.
@@ -38,14 +40,14 @@ def by_rank_turn_crowding(pop, P: np.ndarray, random_state=None, **kwargs) -> np
     -------
     numpy.ndarray of int, shape (n_tournaments, 1)
     """
-    cv, turn, rank, crowding = pop.get("CV", "turn", "rank", "crowding")
+    cv, turn = violations(pop), attributes(pop, "turn").astype(float)
+    rank, crowding = attributes(pop, "rank"), attributes(pop, "crowding")
     # The infeasible carry no rank of this generation; among them only the violation counts.
-    cv = cv[:, 0]
     feasible = cv <= 0.0
     rank = np.where(feasible, rank, 0).astype(float)
     crowding = np.where(feasible, crowding, 0.0).astype(float)
     both = feasible[P].all(axis=1)
-    return tournament(P, random_state, (cv, None), (rank, both), (turn.astype(float), both), (-crowding, both))
+    return tournament(P, random_state, (cv, None), (rank, both), (turn, both), (-crowding, both))
 
 
 def tournament(P: np.ndarray, random_state, *keys) -> np.ndarray:

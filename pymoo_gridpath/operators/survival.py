@@ -6,6 +6,8 @@ import numpy as np
 from pymoo.core.survival import Survival
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 
+from pymoo_gridpath.operators.individuals import attributes, objectives, set_attributes
+
 
 class RankAndSmoothness(Survival):
     """The modified NSGA-II's survival: whole fronts first, and of the last one the smoothest paths.
@@ -24,8 +26,7 @@ class RankAndSmoothness(Survival):
         self.nds = NonDominatedSorting()
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
-        F, turn = pop.get("F", "turn")
-        F, turn = F.astype(float, copy=False), turn.astype(float)
+        F, turn = objectives(pop), attributes(pop, "turn").astype(float)
         n_survive = len(pop) if n_survive is None else n_survive
         rank = np.full(len(pop), len(pop))
         for k, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_survive)):
@@ -34,7 +35,7 @@ class RankAndSmoothness(Survival):
         # Whole fronts come first, so only in the last one that is needed do the further keys decide who survives.
         survivors = np.lexsort((-crowding, turn, rank))[:n_survive]
         pop = pop[survivors]
-        pop.set("rank", rank[survivors], "crowding", crowding[survivors])
+        set_attributes(pop, rank=rank[survivors], crowding=crowding[survivors])
         return pop
 
 

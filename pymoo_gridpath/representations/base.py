@@ -221,14 +221,19 @@ def _fix_edges(moves: np.ndarray, frame: MonotoneFrame, random_state: np.random.
     """Return moves that stay on the grid, redrawing by a linear distribution those that leave it."""
     fixed = moves.copy()
     draws = random_state.random(moves.shape)
-    row = np.full(len(moves), frame.start_row)
-    for k in range(moves.shape[1]):
-        target = row + moves[:, k]
-        above, below = target >= frame.n_rows, target < 0
-        for beyond, room, sign in ((above, frame.n_rows - 1 - row, 1), (below, row, -1)):
-            if beyond.any():
-                fixed[beyond, k] = sign * _draw_linear(room[beyond], draws[beyond, k])
-        row = row + fixed[:, k]
+    # Each round mends the first offending move of every path, since what follows shifts with it.
+    rows, outside = _rows_and_outside(fixed, frame)
+    left = outside
+    while len(left):
+        beyond = (rows[outside] < 0) | (rows[outside] >= frame.n_rows)
+        k = beyond.argmax(axis=1)
+        target = rows[outside, k].astype(np.int64)
+        row = target - fixed[left, k]
+        up = target >= frame.n_rows
+        step = _draw_linear(np.where(up, frame.n_rows - 1 - row, row), draws[left, k])
+        fixed[left, k] = np.where(up, step, -step)
+        rows, outside = _rows_and_outside(fixed[left], frame)
+        left = left[outside]
     return fixed
 
 
