@@ -196,6 +196,7 @@ def test_without_a_legal_path_the_least_interfering_are_kept_and_said_to_be_so()
     assert set(trade_off.measures["interfering_cells"]) == {min(crossed)}
     assert f"cross {min(crossed)} occupied" in trade_off.infeasibility
     assert "NOT FEASIBLE" in trade_off.table() and "NOT feasible" in repr(trade_off)
+    assert all(record.names == () for record in trade_off), "a path across obstacles must not be offered by name"
 
 
 def test_a_run_without_a_feasible_member_falls_back_on_its_population():

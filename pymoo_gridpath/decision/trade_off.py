@@ -222,8 +222,8 @@ class TradeOffSet:
         return self.named[name]
 
     def names(self, index: int) -> tuple[str, ...]:
-        """Return the names that the path at an index goes by, none for most."""
-        return tuple(name for name, k in self.named.items() if k == index)
+        """Return the names that the path at an index goes by, none for most, and none if the paths are not legal."""
+        return tuple(name for name, k in self.named.items() if k == index and self.feasible)
 
     @property
     def shortest(self) -> PathRecord:
