@@ -1,10 +1,10 @@
 """Run Table 1 of Ahmed and Deb (2013) and print its columns beside the paper's.
 
-A row has one random scenario of section 6 (a path kept free, the rest occupied with probability p0), drawn from its size and
-p0, as the whole numbers of obstacles in the paper suggest; ``--scenarios 100`` gives every run its own. Runs search it by
-the paper's modified NSGA-II with 200 individuals until the first legal path, or for 500 generations. The paper's lengths look
-like those of runs that went on to the last generation, though it says that they ended with the first legal path: ``--full``
-goes on.
+Every run has a random scenario of section 6 of its own (a path kept free, the rest occupied with probability p0), so
+that a row tells of its size and p0 and not of one lucky or unlucky draw. The paper seems to have had one scenario a
+row, to judge by its whole numbers of obstacles; ``--scenarios 1`` does the same. Runs search by the paper's modified
+NSGA-II with 200 individuals until the first legal path, or for 500 generations. The paper's lengths look like those of
+runs that went on to the last generation, though it says that they ended with the first legal path: ``--full`` goes on.
 
 Run with ``python benchmarks/table1.py``; ``--help`` lists the options. The whole table takes about an hour on two cores.
 """
@@ -103,13 +103,14 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", choices=(8, 16, 32), default=(8, 16, 32), help="grid sizes")
     parser.add_argument("--p0", type=float, nargs="+", help="obstacle probabilities (default: all)")
     parser.add_argument("--runs", type=int, default=100, help="runs of each row")
-    parser.add_argument("--scenarios", type=int, default=1, help="random scenarios shared out among a row's runs (default: 1)")
+    parser.add_argument("--scenarios", type=int, help="random scenarios shared out among a row's runs (default: one for each)")
     parser.add_argument("--generations", type=int, default=500)
     parser.add_argument("--full", action="store_true", help="go on to the last generation after the first legal path")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
     arguments = parser.parse_args()
 
     when = "at the last generation" if arguments.full else "at the first legal path"
+    arguments.scenarios = arguments.scenarios or arguments.runs
     print(f"{arguments.runs} runs a row on {arguments.scenarios} scenario(s), lengths {when}; ours beside the paper's")
     print("grid     p0 |      obstacles |   success % | median generations |     mean length |  seconds a run")
     start = time.perf_counter()
