@@ -227,7 +227,7 @@ def _plan(arguments) -> int:
         return EXIT_INTERRUPTED
     if not trade_off.feasible:
         print(
-            "pymoo-gridpath: no legal path was found though one exists; a larger --pop-size, more --generations or --runs, or "
+            "pymoo-gridpath: no legal path was found; a larger --pop-size, more --generations or --runs, or "
             "--obstacles constraint may find one",
             file=sys.stderr,
         )
