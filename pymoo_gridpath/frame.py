@@ -72,7 +72,7 @@ class MonotoneFrame:
         raise UnreachableError(
             f"no path from {self.start} to {self.goal} on the grid {grid.name!r} is monotone along "
             f"{' or '.join(axes)}: every one turns back, which the monotone representations cannot code; expected a query that "
-            f"can be crossed one column (or row) at a time"
+            f"can be crossed one column (or row) at a time, or representation='cells', which can code every path"
         )
 
     def _lay_out(self, axis: Axis) -> None:

@@ -48,3 +48,43 @@ def vulnerability(cells, grid, variance=0.5):
 def is_connected(cells):
     """Whether consecutive cells are neighbours."""
     return all(max(abs(a[0] - b[0]), abs(a[1] - b[1])) == 1 for a, b in itertools.pairwise(cells))
+
+
+# -- rows of cells with gaps and pauses -----------------------------------------------------------------------------------
+
+
+def visited(row, width):
+    """Cells (x, y) of a row of indices; one that follows itself counts once."""
+    return [(int(cell) % width, int(cell) // width) for cell, _ in itertools.groupby(row)]
+
+
+def distances(a, b):
+    """Larger and smaller distance of two cells along the axes."""
+    return sorted((abs(a[0] - b[0]), abs(a[1] - b[1])), reverse=True)
+
+
+def octile_length(cells):
+    """Length of the shortest way on an empty grid through all cells in order."""
+    steps = [distances(a, b) for a, b in itertools.pairwise(cells)]
+    return sum(long - short for long, short in steps) + math.sqrt(2.0) * sum(short for _, short in steps)
+
+
+def sign_turn(cells):
+    """Total turn in degrees where each step heads for the nearest cell in the direction of its signs."""
+
+    def sign(value):
+        return (value > 0) - (value < 0)
+
+    steps = [(sign(b[0] - a[0]), sign(b[1] - a[1])) for a, b in itertools.pairwise(cells)]
+    return turn(list(itertools.accumulate(steps, lambda a, b: (a[0] + b[0], a[1] + b[1]), initial=(0, 0))))
+
+
+def broken_cells(cells, grid):
+    """Occupied visited cells, occupied cells beside diagonal steps that cut corners, and cells left out by jumps."""
+    count = sum(bool(grid.occupied[y, x]) for x, y in cells)
+    for a, b in itertools.pairwise(cells):
+        long, short = distances(a, b)
+        count += long - 1
+        if long == short == 1 and not grid.corner_cutting:
+            count += bool(grid.occupied[a[1], b[0]]) + bool(grid.occupied[b[1], a[0]])
+    return count

@@ -26,12 +26,14 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Objective, Vulnerability
 from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament, paper_operators
 from pymoo_gridpath.problems import random_dense_grid
+from pymoo_gridpath.representations import CellSequence
 
 MEASURES = ["length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance"]
 
 
-def make_problem(size=8, seed=5, **options):
-    return GridPathProblem(random_dense_grid(size, 0.25, seed), (0, 0), (size - 1, size - 1), **options)
+def make_problem(size=8, seed=5, corner_cutting=True, **options):
+    grid = random_dense_grid(size, 0.25, seed).replace(corner_cutting=corner_cutting)
+    return GridPathProblem(grid, (0, 0), (size - 1, size - 1), **options)
 
 
 def draw(problem, n=3000, seed=0):
@@ -181,6 +183,45 @@ def test_every_representation_is_decoded(representation):
     trade_off = TradeOffSet.from_results(run(problem, generations=15))
     assert trade_off.feasible
     assert np.array_equal(problem.score(problem.decode(trade_off.X)), trade_off.F)
+
+
+def in_cells(problem, X):
+    """The same paths coded by their cells: the problem and its genes."""
+    coding = CellSequence(problem.grid, problem.start, problem.goal, max_cells=problem.grid.occupied.size)
+    other = GridPathProblem(problem.grid, problem.start, problem.goal, coding, problem.objectives)
+    return other, coding.encode(problem.decode(np.asarray(X)))
+
+
+@pytest.mark.parametrize("corner_cutting", [True, False])
+def test_paths_by_cells_make_the_same_set(corner_cutting, tmp_path):
+    problem = make_problem(corner_cutting=corner_cutting, objectives=("length", "vulnerability", "turn"))
+    X = draw(problem)
+    expected = TradeOffSet.from_genes(problem, X)
+    found = TradeOffSet.from_genes(*in_cells(problem, X))
+    assert expected.feasible and found.feasible and found.named == expected.named
+    for name, values in expected.measures.items():
+        assert np.array_equal(found.measures[name], values), name
+    assert expected.to_csv(tmp_path / "a.csv").read_bytes() == found.to_csv(tmp_path / "b.csv").read_bytes()
+    content = load_json(found.to_json(tmp_path / "b.json"))
+    settings = content["settings"]
+    assert (settings["representation"], settings["axis"], settings["max_cells"]) == ("cells", None, 64)
+    again = TradeOffSet.from_genes(found.problem, [record["genes"] for record in content["paths"]])
+    assert np.array_equal(again.F, expected.F)
+    for record in again:
+        assert reference.interfering_cells(record.cells.tolist(), problem.grid) == 0
+        assert record.length == pytest.approx(reference.length(record.cells.tolist()))
+        assert record.turn == reference.turn(record.cells.tolist())
+
+
+def test_rows_of_other_lengths_are_refused():
+    problem = make_problem()
+    runs = []
+    for max_cells in (30, 40):
+        coding = CellSequence(problem.grid, problem.start, problem.goal, max_cells)
+        other = GridPathProblem(problem.grid, problem.start, problem.goal, coding)
+        runs.append(result_of(other, coding.repair(draw(other, 5), np.random.default_rng(0))))
+    with pytest.raises(GridPathError, match="max_cells"):
+        TradeOffSet.from_results(runs)
 
 
 # -- paths that are not legal -----------------------------------------------------------------------------------------

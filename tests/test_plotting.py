@@ -7,6 +7,7 @@ from matplotlib import pyplot as plt
 from matplotlib.colors import to_rgb
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
+from queries import SPIRAL
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.convergence import ConvergenceRecorder
@@ -133,6 +134,16 @@ def test_lines_run_through_the_centres_of_cells(two, units):
         assert set(label.split(", ")) == set(record.names)
         drawn += 1
     assert drawn == len(set(two.named.values()))
+
+
+def test_paths_that_turn_back_are_drawn(tmp_path):
+    problem = GridPathProblem(SPIRAL, (0, 0), (2, 2), "cells")
+    ways = np.array([[0, 1, 2, 3, 4, 9, 14, 19, 24, 23, 22, 21, 20, 15, 10, 11, 12]])
+    trade_off = TradeOffSet.from_genes(problem, ways)
+    line = lines_by_label(plot_paths(trade_off, which=["knee"]))["knee"]
+    assert np.array_equal(line.get_xydata(), trade_off.knee.cells) and len(trade_off.knee.cells) == 17
+    result = minimize(problem, NSGA2(10), ("n_gen", 3), seed=1, callback=ConvergenceRecorder())
+    assert {file.stem for file in save_figures(trade_off, tmp_path, history=result)} == {"map", "front", "convergence"}
 
 
 def test_lines_on_the_same_cells_are_moved_apart_by_less_than_a_quarter_of_a_cell(two):

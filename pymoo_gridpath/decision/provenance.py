@@ -42,6 +42,7 @@ def describe_problem(problem) -> dict:
             "problem": type(problem).__name__,
             "representation": representation.name,
             "axis": getattr(getattr(representation, "frame", None), "axis", None),
+            "max_cells": getattr(representation, "max_cells", None),
             "objectives": [{"name": f.name, **_scalars(f)} for f in problem.objectives],
             "obstacles": getattr(problem, "obstacles", None),
             "penalty": getattr(problem, "penalty", None),

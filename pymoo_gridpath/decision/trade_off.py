@@ -86,7 +86,7 @@ class TradeOffSet:
         Genes.
     F : numpy.ndarray of float, shape (N, n_obj)
         Plain objectives.
-    paths : ColumnPaths
+    paths : ColumnPaths or CellPaths
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
         ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
@@ -360,7 +360,7 @@ def _common_problem(runs: Sequence) -> Any:
     return first
 
 
-_MUST_AGREE = ("representation", "axis", "objectives", "potential_limit")
+_MUST_AGREE = ("representation", "axis", "max_cells", "objectives", "potential_limit")
 
 
 def _meta(problem, settings: Mapping | None, runs: list[dict]) -> dict:

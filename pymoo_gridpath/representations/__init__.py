@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from pymoo_gridpath.errors import GridPathError, nearest
 from pymoo_gridpath.frame import Axis
@@ -10,45 +11,53 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.representations.absolute import AbsoluteRepresentation
 from pymoo_gridpath.representations.base import MonotoneRepresentation, Representation
 from pymoo_gridpath.representations.binary import BinaryRepresentation
+from pymoo_gridpath.representations.cell_sequence import CellSequence
 from pymoo_gridpath.representations.integer import IntegerRepresentation
 from pymoo_gridpath.representations.mixed import MixedRepresentation
 
 #: The representations by name.
-REPRESENTATIONS: dict[str, type[MonotoneRepresentation]] = {
-    cls.name: cls for cls in (IntegerRepresentation, BinaryRepresentation, MixedRepresentation, AbsoluteRepresentation)
+REPRESENTATIONS: dict[str, type[Representation]] = {
+    cls.name: cls
+    for cls in (IntegerRepresentation, BinaryRepresentation, MixedRepresentation, AbsoluteRepresentation, CellSequence)
 }
 
 
 def make_representation(
     name: str, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"
-) -> MonotoneRepresentation:
+) -> Representation:
     """Return the representation of that name for a query on a grid.
 
     Parameters
     ----------
-    name : {"integer", "binary", "mixed", "absolute"}
+    name : {"integer", "binary", "mixed", "absolute", "cells"}
     grid : OccupancyGrid
     start, goal : (int, int)
         Cells (x, y).
     axis : {"auto", "x", "y"}, default "auto"
-        See `MonotoneFrame`.
+        See `MonotoneFrame`; "cells" has no axis and takes "auto" only.
 
     Raises
     ------
     GridPathError
-        If there is no such representation.
+        If there is no such representation, or it has no axis and one is given.
     GridError, UnreachableError
-        If the query cannot be used, see `MonotoneFrame`.
+        If the query cannot be used, see `MonotoneFrame` and `CellSequence`.
     """
     if name not in REPRESENTATIONS:
         raise GridPathError(f"there is no representation {name!r}; {nearest(name, REPRESENTATIONS)}")
-    return REPRESENTATIONS[name](grid, start, goal, axis)
+    representation: Any = REPRESENTATIONS[name]
+    if issubclass(representation, MonotoneRepresentation):
+        return representation(grid, start, goal, axis)
+    if axis != "auto":
+        raise GridPathError(f"axis is {axis!r}, but paths of the {name} representation advance along none; expected 'auto'")
+    return representation(grid, start, goal)
 
 
 __all__ = [
     "REPRESENTATIONS",
     "AbsoluteRepresentation",
     "BinaryRepresentation",
+    "CellSequence",
     "IntegerRepresentation",
     "MixedRepresentation",
     "MonotoneRepresentation",

@@ -34,7 +34,7 @@ class AbsoluteRepresentation(MonotoneRepresentation):
         self.xl = np.zeros(self.n_var, dtype=int)
         self.xu = np.full(self.n_var, self.frame.n_rows - 1)
 
-    def moves(self, X: np.ndarray) -> np.ndarray:
+    def row_moves(self, X: np.ndarray) -> np.ndarray:
         return np.diff(self.exit_rows(X), axis=1, prepend=self.frame.start_row)
 
     def exit_rows(self, X: np.ndarray) -> np.ndarray:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import functools
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
 
+from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.frame import Axis, MonotoneFrame
 from pymoo_gridpath.grid import Cell, OccupancyGrid
-from pymoo_gridpath.paths import ColumnPaths
+from pymoo_gridpath.paths import CellPaths, ColumnPaths
+from pymoo_gridpath.search.moves import HEADINGS, Moves
+from pymoo_gridpath.search.sequences import Sequences
 
 
 class Representation(ABC):
@@ -40,8 +44,46 @@ class Representation(ABC):
     start: Cell
     goal: Cell
 
+    @property
     @abstractmethod
-    def decode(self, X: np.ndarray) -> ColumnPaths:
+    def moves(self) -> Moves:
+        """The legal steps of the paths that can be coded."""
+
+    @abstractmethod
+    def from_sequences(self, sequences: Sequences) -> np.ndarray:
+        """Return the rows of genes that code paths given by the cells that they visit.
+
+        Parameters
+        ----------
+        sequences : Sequences
+            N paths from the start to the goal.
+
+        Returns
+        -------
+        numpy.ndarray, shape (N, n_var), dtype `vtype`
+
+        Raises
+        ------
+        GridPathError
+            If one of them has no code.
+        """
+
+    def to_sequences(self, X: np.ndarray) -> Sequences:
+        """Return the cells that the decoded paths visit, the inverse of `from_sequences`.
+
+        Parameters
+        ----------
+        X : numpy.ndarray, shape (N, n_var)
+
+        Returns
+        -------
+        Sequences
+            N paths; no cell follows itself.
+        """
+        return self.decode(X).sequences
+
+    @abstractmethod
+    def decode(self, X: np.ndarray) -> ColumnPaths | CellPaths:
         """Return the paths that rows of genes code, without drawing a random number.
 
         Parameters
@@ -50,7 +92,7 @@ class Representation(ABC):
 
         Returns
         -------
-        ColumnPaths
+        ColumnPaths or CellPaths
             N paths.
         """
 
@@ -60,8 +102,8 @@ class Representation(ABC):
 
         Parameters
         ----------
-        paths : ColumnPaths
-            N paths.
+        paths : ColumnPaths or CellPaths
+            N paths, as `decode` returns them.
 
         Returns
         -------
@@ -83,7 +125,7 @@ class Representation(ABC):
 
     @abstractmethod
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
-        """Return X with genes rewritten where a path would leave the grid."""
+        """Return X with genes rewritten where they code what is no path: one that leaves the grid, or one with gaps."""
 
     def genes(self, X: np.ndarray) -> np.ndarray:
         """Return X as int64 within the bounds; real numbers, from operators that know no integers, are rounded.
@@ -137,13 +179,59 @@ class MonotoneRepresentation(Representation):
         """Return a field over the grid as prefix sums up each column of the frame."""
         return self.frame.prefix_sums(field)
 
+    @functools.cached_property
+    def moves(self) -> Moves:
+        """The legal steps along the five headings that do not go back: forward, diagonally forward, and across."""
+        k = 0 if self.frame.axis == "x" else 1
+        forward = np.sign(self.goal[k] - self.start[k]) * HEADINGS[:, k] >= 0
+        return Moves(self.grid, np.flatnonzero(forward).tolist())
+
+    def from_sequences(self, sequences: Sequences) -> np.ndarray:
+        """Return the rows of genes that code paths given by the cells that they visit.
+
+        Parameters
+        ----------
+        sequences : Sequences
+            N paths from the start to the goal, monotone along the axis. What counts is where a path enters and leaves each
+            column; a path that is longer than it need be between the two gets the genes of the direct way, see `encode`.
+
+        Returns
+        -------
+        numpy.ndarray, shape (N, n_var), dtype `vtype`
+            Genes of paths that are no longer, and legal where the given ones are.
+
+        Raises
+        ------
+        GridPathError
+            If a path leads from or to another cell, jumps, or goes back along the axis.
+        """
+        return self.encode(self._column_paths(sequences)).astype(self.vtype, copy=False)
+
+    def _column_paths(self, sequences: Sequences) -> ColumnPaths:
+        """Return the paths that enter and leave each column where the given ones do."""
+        frame, shape = self.frame, (len(sequences.lengths), self.frame.n_columns)
+        check_ends(sequences, self)
+        column, row = frame.from_cells(self.moves.cells(sequences.cells))
+        first = np.zeros(len(column), dtype=bool)
+        first[sequences.offsets[:-1]] = True
+        gain, climb = np.diff(column)[~first[1:]], np.diff(row)[~first[1:]]
+        if ((gain < 0) | (gain > 1) | (np.abs(climb) > 1)).any():
+            raise GridPathError(
+                f"a path jumps or goes back along the axis {frame.axis!r}, expected steps between neighbouring cells that the "
+                f"{self.name} representation can code"
+            )
+        # A path is never back in a column that it left, so each run of equal columns is one column of one path.
+        enters = first | (np.diff(column, prepend=-1) != 0)
+        leaves = np.roll(enters, -1)
+        return ColumnPaths(frame, row[enters].astype(np.int32).reshape(shape), row[leaves].astype(np.int32).reshape(shape))
+
     @property
     def _n_moves(self) -> int:
         """Number of coded moves: the climb in the start column and every step but the last."""
         return self.frame.n_columns - 1
 
     @abstractmethod
-    def moves(self, X: np.ndarray) -> np.ndarray:
+    def row_moves(self, X: np.ndarray) -> np.ndarray:
         """Return the rows gained by each coded move, int, shape (N, n_columns - 1); move 0 is the climb at the start."""
 
     def exit_rows(self, X: np.ndarray) -> np.ndarray:
@@ -151,7 +239,7 @@ class MonotoneRepresentation(Representation):
 
         A move that would leave the grid ends at the edge, without drawing a number.
         """
-        return _rows_within(self.moves(X), self.frame)
+        return _rows_within(self.row_moves(X), self.frame)
 
     def decode(self, X: np.ndarray) -> ColumnPaths:
         """Return the paths that the rows of X code.
@@ -187,7 +275,7 @@ class MonotoneRepresentation(Representation):
             A new array; rows that need no fixing are as they were.
         """
         X = self.genes(X).astype(self.vtype)
-        moves = self.moves(X)
+        moves = self.row_moves(X)
         outside = _rows_and_outside(moves, self.frame)[1]
         if len(outside):
             fixed = _fix_edges(moves[outside], self.frame, random_state)
@@ -197,6 +285,17 @@ class MonotoneRepresentation(Representation):
     @abstractmethod
     def _rewrite(self, X: np.ndarray, moves: np.ndarray, fixed: np.ndarray) -> np.ndarray:
         """Return X with the genes changed where ``fixed`` moves differ from ``moves``."""
+
+
+def check_ends(sequences: Sequences, representation: Representation) -> None:
+    """Raise GridPathError if a path does not lead from the start to the goal of a representation."""
+    first, last = (representation.moves.index(cell) for cell in (representation.start, representation.goal))
+    cells, offsets, lengths = *sequences, sequences.lengths
+    if (lengths < 1).any() or (cells[offsets[:-1]] != first).any() or (cells[offsets[1:] - 1] != last).any():
+        raise GridPathError(
+            f"a path leads between other cells than start {representation.start} and goal {representation.goal}, "
+            f"expected paths of the query"
+        )
 
 
 def _rows_and_outside(moves: np.ndarray, frame: MonotoneFrame) -> tuple[np.ndarray, np.ndarray]:
@@ -219,9 +318,35 @@ def _rows_within(moves: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
 
 def _fix_edges(moves: np.ndarray, frame: MonotoneFrame, random_state: np.random.Generator) -> np.ndarray:
     """Return moves that stay on the grid, redrawing by a linear distribution those that leave it."""
-    fixed = moves.copy()
     draws = random_state.random(moves.shape)
-    # Each round mends the first offending move of every path, since what follows shifts with it.
+    if COMPILED:
+        return _fix_path_by_path(np.ascontiguousarray(moves), draws, frame.start_row, frame.n_rows)
+    return _fix_move_by_move(moves, draws, frame)
+
+
+@kernel
+def _fix_path_by_path(moves, draws, start_row, n_rows):
+    """Do what `_fix_move_by_move` does, several times as fast if compiled, and as much slower if not."""
+    fixed = moves.copy()
+    for i in range(len(moves)):
+        row = start_row
+        for k in range(moves.shape[1]):
+            target = row + moves[i, k]
+            if target < 0 or target >= n_rows:
+                room = n_rows - 1 - row if target >= n_rows else row
+                step = 0
+                if room > 0:
+                    weight = draws[i, k] * (room * (room + 1) / 2)
+                    step = min(max(int(np.floor((np.sqrt(8.0 * weight + 1.0) + 1.0) / 2.0)), 1), room)
+                fixed[i, k] = step if target >= n_rows else -step
+                target = row + fixed[i, k]
+            row = target
+    return fixed
+
+
+def _fix_move_by_move(moves: np.ndarray, draws: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
+    """Mend the first offending move of every path in each round, since what follows shifts with it."""
+    fixed = moves.copy()
     rows, outside = _rows_and_outside(fixed, frame)
     left = outside
     while len(left):

@@ -49,7 +49,9 @@ class BinaryRepresentation(MonotoneRepresentation):
         X = self.genes(X)
         start = X[:, : self.n_bits] @ self._powers
         # The last gene has no climb; the start climb stands in for it to make the array rectangular.
-        genes = np.concatenate([X[:, self.n_bits :], X[:, : self.n_bits]], axis=1).reshape(len(X), -1, 2 + self.n_bits)
+        genes = np.concatenate([X[:, self.n_bits :], X[:, : self.n_bits]], axis=1).reshape(
+            len(X), self._n_moves, 2 + self.n_bits
+        )
         direction = 2 * genes[:, :, 0] + genes[:, :, 1]
         return start, direction, (genes[:, :, 2:] @ self._powers)[:, :-1]
 
@@ -60,10 +62,10 @@ class BinaryRepresentation(MonotoneRepresentation):
             return (values[..., None] & self._powers) > 0
 
         genes = np.concatenate([(direction[:, :, None] & np.array([2, 1])) > 0, bits(np.column_stack([climb, start]))], axis=2)
-        row = genes.reshape(len(genes), -1)
+        row = genes.reshape(len(genes), self.n_var)
         return np.concatenate([row[:, self.n_var - self.n_bits :], row[:, : self.n_var - self.n_bits]], axis=1)
 
-    def moves(self, X: np.ndarray) -> np.ndarray:
+    def row_moves(self, X: np.ndarray) -> np.ndarray:
         start, direction, climb = self._split(X)
         n_rows, start_row = self.frame.n_rows, self.frame.start_row
         wrapped = (start_row + start >= n_rows) & (start < n_rows)

@@ -55,7 +55,7 @@ class IntegerRepresentation(MonotoneRepresentation):
         self.xl[0] = -frame.start_row
         self.xu[0] = frame.n_rows - 1 - frame.start_row
 
-    def moves(self, X: np.ndarray) -> np.ndarray:
+    def row_moves(self, X: np.ndarray) -> np.ndarray:
         return self.genes(X)
 
     def encode(self, paths: ColumnPaths) -> np.ndarray:

@@ -44,7 +44,7 @@ class MixedRepresentation(MonotoneRepresentation):
         self.xl[n] = -frame.start_row
         self.xu[n] = frame.n_rows - 1 - frame.start_row
 
-    def moves(self, X: np.ndarray) -> np.ndarray:
+    def row_moves(self, X: np.ndarray) -> np.ndarray:
         X = self.genes(X)
         moves = X[:, self.n_bits :].copy()
         moves[:, 1:] *= 2 * X[:, : self.n_bits - 1] - 1

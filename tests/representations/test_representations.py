@@ -5,43 +5,15 @@ import pytest
 import reference
 from hypothesis import given
 from hypothesis import strategies as st
+from queries import queries, random_genes
 
 from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
 from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Vulnerability
-from pymoo_gridpath.representations import REPRESENTATIONS, make_representation
+from pymoo_gridpath.representations import make_representation
 
-NAMES = sorted(REPRESENTATIONS)
-
-
-@st.composite
-def queries(draw, density=0.15):
-    """A random grid with a start and a goal that a monotone path joins, and the axis of the paths."""
-    height, width = draw(st.integers(1, 9)), draw(st.integers(1, 9))
-    seed = draw(st.integers(0, 2**32 - 1))
-    rng = np.random.default_rng(seed)
-    occupied = rng.random((height, width)) < density
-    start = draw(st.integers(0, width - 1)), draw(st.integers(0, height - 1))
-    goal = draw(st.integers(0, width - 1)), draw(st.integers(0, height - 1))
-    axis = draw(st.sampled_from(["auto", "x", "y"]))
-    for x, y in (start, goal):
-        occupied[y, x] = False
-    grid = OccupancyGrid(occupied, corner_cutting=draw(st.booleans()))
-    try:
-        MonotoneFrame(grid, start, goal, axis)
-    except GridError:
-        grid = grid.replace(occupied=np.zeros((height, width)))
-    try:
-        MonotoneFrame(grid, start, goal, axis)
-    except GridError:
-        start, goal, grid = (0, 0), (1, 0), OccupancyGrid(np.zeros((1, 2)))
-        axis = "x"
-    return grid, start, goal, axis, rng
-
-
-def random_genes(coding, rng, n=20):
-    return rng.integers(coding.xl, coding.xu, size=(n, coding.n_var), endpoint=True).astype(coding.vtype)
+NAMES = ["absolute", "binary", "integer", "mixed"]
 
 
 @given(queries(), st.sampled_from(NAMES))
@@ -98,11 +70,11 @@ def test_repair_keeps_paths_on_the_grid_and_is_idempotent(query, name):
     assert np.array_equal(X, before), "the argument was changed"
     assert repaired.dtype == np.dtype(coding.vtype)
     assert (repaired >= coding.xl).all() and (repaired <= coding.xu).all()
-    rows = coding.frame.start_row + np.cumsum(coding.moves(repaired), axis=1)
+    rows = coding.frame.start_row + np.cumsum(coding.row_moves(repaired), axis=1)
     assert (rows >= 0).all() and (rows < coding.frame.n_rows).all()
     assert np.array_equal(coding.repair(repaired, rng), repaired)
-    inside = (coding.frame.start_row + np.cumsum(coding.moves(X), axis=1) >= 0).all(axis=1)
-    inside &= (coding.frame.start_row + np.cumsum(coding.moves(X), axis=1) < coding.frame.n_rows).all(axis=1)
+    inside = (coding.frame.start_row + np.cumsum(coding.row_moves(X), axis=1) >= 0).all(axis=1)
+    inside &= (coding.frame.start_row + np.cumsum(coding.row_moves(X), axis=1) < coding.frame.n_rows).all(axis=1)
     assert np.array_equal(repaired[inside], X[inside])
 
 
@@ -128,7 +100,7 @@ def test_edge_fixing_draws_rows_by_the_linear_distribution(name, up):
         X[:, :3] = [0, 1, 1]
         X[:, 3:8] = [up, not up, 1, 1, 1]
         X[:, 8::5] = True  # further steps horizontal: 10
-    fixed = coding.moves(coding.repair(X, np.random.default_rng(1)))
+    fixed = coding.row_moves(coding.repair(X, np.random.default_rng(1)))
     drawn = row + fixed[:, 1]
     room = np.arange(row + 1, size) if up else np.arange(row)
     expected = np.abs(room - row) / np.abs(room - row).sum()
@@ -191,7 +163,7 @@ def test_refusals_say_why():
     wall[:4, 1], wall[1:, 3] = 1, 1  # an S that every path along x can follow, and none along y
     grid = OccupancyGrid(wall)
     assert MonotoneFrame(grid, (0, 0), (4, 4), "auto").axis == "x"
-    with pytest.raises(UnreachableError, match="monotone along y"):
+    with pytest.raises(UnreachableError, match=r"monotone along y: .*representation='cells', which can code every path"):
         MonotoneFrame(grid, (0, 0), (4, 4), "y")
     with pytest.raises(GridError, match="same x"):
         MonotoneFrame(grid, (0, 0), (0, 4), "x")

@@ -1,0 +1,220 @@
+"""The coding of any path: the cells that it visits."""
+
+from __future__ import annotations
+
+import functools
+import math
+import operator
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.fields import obstacle_potential
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.paths import CellPaths
+from pymoo_gridpath.representations.base import Representation, check_ends
+from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.sequences import Sequences, cut_loops, mend
+
+
+class CellSequence(Representation):
+    """The genes are the cells that a path visits, in order, and the goal again to the end of the row.
+
+    A path may lead anywhere, back and around included, which the monotone codings cannot say. Gene k is the index
+    ``y * width + x`` of a cell; gene 0 is fixed to the start and the last one to the goal. A cell that follows itself counts
+    once.
+
+    Nearly no row of random genes is a path. Rows with jumps or occupied cells are measured by the rules of `CellPaths`,
+    never as legal, and `repair` makes legal paths of them. Searches need operators that change whole stretches of a path;
+    those that change single genes find nothing.
+
+    Parameters
+    ----------
+    grid : OccupancyGrid
+    start, goal : (int, int)
+        Cells (x, y).
+    max_cells : int, optional
+        Genes of a row, the most cells that a path can visit. The default is the larger of two numbers, and no more than
+        the free cells that can be reached. One is 1 more than the length of the shortest among the least vulnerable paths
+        (in the default potential), room for every path that is not dominated in length and vulnerability: each step
+        is at least 1 long, and a longer path would be dominated by that one. The other is 1.5 times the cells of a shortest
+        path and 8 more.
+
+    Raises
+    ------
+    GridError, UnreachableError
+        If start or goal is no free cell, both are the same, or no path joins them.
+    GridPathError
+        If max_cells is no whole number, or too small for a shortest path.
+
+    Attributes
+    ----------
+    max_cells : int
+
+    Examples
+    --------
+    >>> grid = OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 0, 0]])
+    >>> coding = CellSequence(grid, (2, 0), (2, 2), max_cells=8)
+    >>> X = np.array([[2, 1, 0, 3, 6, 7, 8, 8]])
+    >>> coding.decode(X).cells(0).tolist()
+    [[2, 0], [1, 0], [0, 0], [0, 1], [0, 2], [1, 2], [2, 2]]
+    >>> coding.from_sequences(coding.to_sequences(X)).tolist()
+    [[2, 1, 0, 3, 6, 7, 8, 8]]
+    """
+
+    name = "cells"
+    vtype = int
+
+    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], max_cells: int | None = None):
+        self.grid = grid
+        self.start, self.goal = grid.check_query(start, goal)
+        self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells)
+        self.n_var = self.max_cells
+        self.xl = np.zeros(self.n_var, dtype=int)
+        self.xu = np.full(self.n_var, self.moves.n_cells - 1)
+        self.xl[0] = self.xu[0] = self.moves.index(self.start)
+        self.xl[-1] = self.xu[-1] = self.moves.index(self.goal)
+
+    @functools.cached_property
+    def moves(self) -> Moves:
+        """The legal steps, along all eight headings."""
+        return Moves(self.grid)
+
+    def decode(self, X: np.ndarray) -> CellPaths:
+        """Return the paths that the rows of X code.
+
+        Parameters
+        ----------
+        X : numpy.ndarray, shape (N, n_var)
+            Genes. Real numbers are rounded to the nearest gene.
+
+        Returns
+        -------
+        CellPaths
+            N paths from the start to the goal, legal or not.
+        """
+        return CellPaths(self.grid, self.genes(X))
+
+    def encode(self, paths) -> np.ndarray:
+        """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""
+        return self.from_sequences(paths.sequences)
+
+    def fits(self, sequences: Sequences) -> np.ndarray:
+        """Return which paths have no more cells than a row has genes, bool, shape (N,)."""
+        return sequences.lengths <= self.max_cells
+
+    def from_sequences(self, sequences: Sequences) -> np.ndarray:
+        """Return the rows of genes that code paths given by the cells that they visit.
+
+        Parameters
+        ----------
+        sequences : Sequences
+            N paths from the start to the goal. Of those that do not fit, loops are left out.
+
+        Returns
+        -------
+        numpy.ndarray of int, shape (N, n_var)
+            Padded with the goal.
+
+        Raises
+        ------
+        GridPathError
+            If a path leads from or to another cell, or has more than ``max_cells`` cells even without loops.
+        """
+        check_ends(sequences, self)
+        fits = self.fits(sequences)
+        if fits.all():
+            return self._padded(sequences)
+        X = np.empty((len(fits), self.n_var), dtype=np.int64)
+        X[fits] = self._padded(_chosen(sequences, fits))
+        X[~fits] = self._padded(cut_loops(_chosen(sequences, ~fits), self.moves.n_cells))
+        return X
+
+    def _padded(self, sequences: Sequences) -> np.ndarray:
+        """Return the rows of paths, filled up with the goal."""
+        lengths = sequences.lengths
+        if not self.fits(sequences).all():
+            raise GridPathError(
+                f"a path visits {lengths.max()} cells, expected at most {self.max_cells}, the max_cells of the {self.name} "
+                f"representation"
+            )
+        X = np.full((len(lengths), self.n_var), self.xu[-1], dtype=np.int64)
+        X[np.arange(self.n_var) < lengths[:, None]] = sequences.cells
+        return X
+
+    def prepare(self, field: np.ndarray) -> np.ndarray:
+        """Return a field over the grid by the index of the cell, shape (height * width,)."""
+        field = np.asarray(field)
+        if field.shape != self.grid.shape:
+            raise GridPathError(f"a field has shape {field.shape}, expected {self.grid.shape}, the (height, width) of the grid")
+        return field.ravel().astype(float if field.dtype.kind == "f" else np.int64)
+
+    def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
+        """Return X with rows rewritten that are no legal paths.
+
+        Parameters
+        ----------
+        X : numpy.ndarray, shape (N, n_var)
+        random_state : numpy.random.Generator
+            Not drawn from.
+
+        Returns
+        -------
+        numpy.ndarray of int, shape (N, n_var)
+            A new array of legal paths, each with its pauses moved to the end. Of a row that was none, what can be followed is
+            joined by shortest ways, see `pymoo_gridpath.search.sequences.mend`; if that does not fit into the row, it becomes a
+            shortest path.
+        """
+        paths = self.decode(X)
+        broken = paths.interfering_cells > 0
+        repaired = np.empty((len(paths), self.n_var), dtype=np.int64)
+        repaired[~broken] = self.encode(paths[~broken])
+        if broken.any():
+            ends = self.moves.index(self.start), self.moves.index(self.goal)
+            repaired[broken] = self.from_sequences(mend(paths[broken].sequences, self.moves, *ends, self.max_cells))
+        return repaired
+
+
+def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None) -> int:
+    """Return ``max_cells``, checked, or its default."""
+    graph = grid.move_graph()
+    _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
+    least = 1
+    cell = goal
+    while cell != start:
+        cell = before[cell]
+        least += 1
+    if max_cells is None:
+        reachable = np.count_nonzero(grid.regions == grid.regions.flat[start])
+        safest = 1 + math.floor(_safest_length(grid, graph, start, goal) + 1e-6)
+        return min(max(safest, math.ceil(1.5 * least) + 8), int(reachable))
+    try:
+        given = operator.index(max_cells)
+    except TypeError:
+        given = 0
+    if given < least:
+        raise GridPathError(
+            f"max_cells is {max_cells!r}, expected a whole number of at least {least}, the cells of a shortest path"
+        )
+    return given
+
+
+def _safest_length(grid: OccupancyGrid, graph: sparse.csr_array, start: int, goal: int) -> float:
+    """Return the length of the shortest among the least vulnerable paths."""
+    potential = obstacle_potential(grid).ravel()
+    tail, head = np.repeat(np.arange(potential.size), np.diff(graph.indptr)), graph.indices
+    cost = sparse.csr_array((potential[head], head, graph.indptr), shape=graph.shape)
+    least = csgraph.dijkstra(cost, indices=start)
+    # The sums are exact, so the least vulnerable paths are those whose every step adds no more than it must.
+    needed = least[head] == least[tail] + potential[head]
+    steps = sparse.csr_array((graph.data[needed], (tail[needed], head[needed])), shape=graph.shape)
+    return float(csgraph.dijkstra(steps, indices=start)[goal])
+
+
+def _chosen(sequences: Sequences, mask: np.ndarray) -> Sequences:
+    """Return some of the paths."""
+    lengths = sequences.lengths
+    return Sequences(sequences.cells[np.repeat(mask, lengths)], np.cumsum([0, *lengths[mask]]))

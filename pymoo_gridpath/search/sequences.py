@@ -1,0 +1,164 @@
+"""Batches of cell sequences of different lengths, and the kernels that make legal paths of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.route import descend, find_route, make_work, room, unwind
+from pymoo_gridpath.search.shortest import UNREACHABLE
+from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, plain_terrain
+
+# How far around the two ends of a broken stretch, and how long, a way to join them is looked for.
+JOIN_MARGIN, JOIN_LIMIT = np.int64(8), np.int64(4096)
+
+
+class Sequences(NamedTuple):
+    """N paths as the indices of the cells that they visit, one after another in one array.
+
+    Attributes
+    ----------
+    cells : numpy.ndarray of int64, shape (n,)
+        Indices of cells as in `Moves`; path i is ``cells[offsets[i]:offsets[i + 1]]``, from its start to its goal.
+    offsets : numpy.ndarray of int64, shape (N + 1,)
+    """
+
+    cells: np.ndarray
+    offsets: np.ndarray
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """Number of cells of each path, int64, shape (N,)."""
+        return np.diff(self.offsets)
+
+
+def are_legal(sequences: Sequences, terrain: Terrain) -> np.ndarray:
+    """Return whether each sequence is a path from the start to the goal by legal steps, bool, shape (N,)."""
+    return _are_legal(terrain, sequences.cells, sequences.offsets)
+
+
+def cut_loops(sequences: Sequences, n_cells: int) -> Sequences:
+    """Return the paths without what lies between the first and the last visit of a cell.
+
+    Parameters
+    ----------
+    sequences : Sequences
+    n_cells : int
+        Number of cells of the grid.
+    """
+    return Sequences(*_cut_loops(sequences.cells, sequences.offsets, np.empty(n_cells, dtype=np.int64)))
+
+
+def mend(sequences: Sequences, moves: Moves, start: int, goal: int, max_cells: int | None = None) -> Sequences:
+    """Return legal paths that keep to sequences of cells as far as these can be followed.
+
+    Cells that no path from the start to the goal visits are dropped, what is then broken is joined by shortest routes, a cell
+    that cannot be reached from the ones before it nearby is left out, and loops are cut.
+
+    Parameters
+    ----------
+    sequences : Sequences
+        N sequences of whole numbers; those that are no cells are dropped like occupied ones.
+    moves : Moves
+    start, goal : int
+        Indices of two cells that a path joins.
+    max_cells : int, optional
+        A path of more cells is replaced by the shortest.
+
+    Returns
+    -------
+    Sequences
+        N paths from the start to the goal.
+    """
+    terrain = plain_terrain(moves, start, goal)
+    most = moves.n_cells if max_cells is None else max_cells
+    return Sequences(*_mend(terrain, make_work(terrain), sequences.cells, sequences.offsets, most))
+
+
+@kernel
+def _are_legal(terrain, cells, offsets):
+    legal = np.zeros(len(offsets) - 1, dtype=np.bool_)
+    for i in range(len(legal)):
+        first, last = offsets[i], offsets[i + 1] - 1
+        if last < first or cells[first] != terrain.start or cells[last] != terrain.goal:
+            continue
+        k = first
+        while k < last and heading_between(terrain, cells[k], cells[k + 1]) >= 0:
+            k += 1
+        legal[i] = k == last
+    return legal
+
+
+@kernel
+def heading_between(terrain, cell, other):
+    """Return the heading of the legal step from one cell to another, or -1."""
+    if cell < 0 or cell >= len(terrain.legal):
+        return -1
+    for m in range(8):
+        if (terrain.legal[cell] >> m) & 1 and cell + terrain.offsets[m] == other:
+            return m
+    return -1
+
+
+@kernel
+def _cut_loops(cells, offsets, place):
+    out, ends = np.empty(len(cells), dtype=np.int64), np.zeros(len(offsets), dtype=np.int64)
+    n = 0
+    for i in range(len(offsets) - 1):
+        path = cells[offsets[i] : offsets[i + 1]]
+        out, n = append_without_loops(path, len(path), place, out, n)
+        ends[i + 1] = n
+    return out[:n].copy(), ends
+
+
+@kernel
+def append_without_loops(path, length, place, out, n):
+    """Append the ``length`` cells of a path, without loops, to the ``n`` cells of another array; return both anew."""
+    for i in range(length):
+        place[path[i]] = i
+    out = room(out, n + length)
+    i = 0
+    while i < length:
+        out[n] = path[i]
+        n += 1
+        i = place[path[i]] + 1
+    return out, n
+
+
+@kernel
+def _mend(terrain, work, cells, offsets, max_cells):
+    out, ends = np.empty(len(cells) + 1, dtype=np.int64), np.zeros(len(offsets), dtype=np.int64)
+    path = np.empty(1024, dtype=np.int64)
+    total = 0
+    for i in range(len(offsets) - 1):
+        path, n = _follow(terrain, work, cells[offsets[i] : offsets[i + 1]], path)
+        out, total = append_without_loops(path, n, work.place, out, total)
+        if total - ends[i] > max_cells:
+            path, n = descend(terrain, path, 1)
+            out, total = append_without_loops(path, n, work.place, out, ends[i])
+        ends[i + 1] = total
+    return out[:total].copy(), ends
+
+
+@kernel
+def _follow(terrain, work, cells, path):
+    """Write the path from the start to the goal that follows cells as far as they can be; return it and its length."""
+    weight = np.zeros(terrain.fields.shape[1] + 1, dtype=np.int64)
+    weight[0] = FULL_WEIGHT
+    noise = np.zeros(3, dtype=np.int64)
+    path[0] = terrain.start
+    n = 1
+    for cell in cells:
+        last = path[n - 1]
+        if cell == last or cell < 0 or cell >= len(terrain.legal) or terrain.bounds[cell, 0] >= UNREACHABLE:
+            continue
+        if heading_between(terrain, last, cell) >= 0:
+            path = room(path, n + 1)
+            path[n] = cell
+            n += 1
+        elif find_route(terrain, work, last, cell, weight, noise, JOIN_MARGIN, JOIN_LIMIT):
+            path, n = unwind(terrain, work, last, cell, path, n)
+    return descend(terrain, path, n)

@@ -1,0 +1,167 @@
+"""Terrains and routes against shortest paths of scipy."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from queries import SPIRAL, queries
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from pymoo_gridpath.representations import make_representation
+from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.route import NOWHERE, block_noise, find_route, least_rest, make_work, unwind
+from pymoo_gridpath.search.shortest import UNREACHABLE
+from pymoo_gridpath.search.terrain import LARGEST_COST, make_terrain, plain_terrain
+
+EVERYWHERE = 10**6
+
+
+def terrain_of(query, name, n_fields=1):
+    grid, start, goal, axis, rng = query
+    moves = make_representation(name, grid, start, goal, "auto" if name == "cells" else axis).moves
+    fields = [rng.random(grid.shape) * 10 ** rng.uniform(-3, 3) for _ in range(n_fields)]
+    return make_terrain(moves, moves.index(start), moves.index(goal), fields)
+
+
+def graph_of(terrain, weight, noise=(0, 0, 0), box=None):
+    """The terrain's steps and what they cost, built step by step."""
+    n, width = len(terrain.legal), terrain.width
+    tails, heads, costs = [], [], []
+    for cell in range(n):
+        for m in range(8):
+            if terrain.legal[cell] >> m & 1:
+                other = int(cell + terrain.offsets[m])
+                x, y = other % width, other // width
+                if box and not (box[0] <= x <= box[1] and box[2] <= y <= box[3]):
+                    continue
+                cost = int(weight[0]) * (terrain.diagonal if m % 2 else terrain.straight)
+                cost += sum(int(w) * int(c) for w, c in zip(weight[1:], terrain.fields[other], strict=True))
+                if noise[0]:
+                    cost += (cost * noise[0] >> 10) * int(block_noise(x >> noise[1], y >> noise[1], noise[2])) >> 10
+                tails.append(cell)
+                heads.append(other)
+                costs.append(cost)
+    return sparse.csr_array((np.array(costs, dtype=float), (tails, heads)), shape=(n, n))
+
+
+def cost_of(graph, cells):
+    return sum(graph[a, b] for a, b in pairwise(cells))
+
+
+@settings(max_examples=50)
+@given(queries(), st.sampled_from(["cells", "integer"]), st.integers(0, 2))
+def test_bounds_are_shortest_paths_from_the_start_and_to_the_goal(query, name, n_fields):
+    terrain = terrain_of(query, name, n_fields)
+    assert terrain.n_terms == n_fields + 1 and terrain.useful[[terrain.start, terrain.goal]].all()
+    assert max(terrain.diagonal, terrain.fields.max(initial=0)) <= LARGEST_COST + 1
+    for k, weight in enumerate(np.eye(n_fields + 1, dtype=int)):
+        graph = graph_of(terrain, weight)
+        graph.data += 1e-6  # scipy takes a step that costs nothing for none
+        for column, costs in (
+            (2 * k, csgraph.dijkstra(graph.T, indices=terrain.goal)),
+            (2 * k + 1, csgraph.dijkstra(graph, indices=terrain.start)),
+        ):
+            found = terrain.bounds[terrain.useful, column]
+            assert found == pytest.approx(costs[terrain.useful], abs=0.01)
+            assert (terrain.bounds[~terrain.useful, column] == UNREACHABLE).all()
+
+
+def test_a_terrain_leaves_out_dead_ends_of_monotone_paths():
+    occupied = np.zeros((3, 5), dtype=bool)
+    occupied[1, 3] = occupied[2, 3] = occupied[1, 4] = True
+    moves = make_representation("integer", SPIRAL.replace(occupied=occupied), (0, 0), (4, 0)).moves
+    terrain = plain_terrain(moves, 0, 4)
+    assert plain_terrain(moves, 0, 4) is terrain
+    assert np.flatnonzero(~terrain.useful).tolist() == [8, 9, 13, 14]
+    # From the right of the wall nothing leads back to it.
+    assert terrain.legal[3] >> 2 & 1 == 0
+
+
+def test_terms_have_comparable_ranges():
+    rng = np.random.default_rng(0)
+    grid = SPIRAL.replace(occupied=rng.random((40, 40)) < 0.2)
+    moves = Moves(grid)
+    cells = np.flatnonzero(grid.regions == grid.regions[20, 20])
+    ends = int(cells[0]), int(cells[-1])
+    field = rng.random(grid.shape)
+    small, large = (make_terrain(moves, *ends, [scale * field]) for scale in (1e-3, 1e3))
+    assert small.straight == pytest.approx(large.straight, rel=1e-5)
+    assert small.fields == pytest.approx(large.fields, rel=1e-5, abs=2)
+
+
+@settings(max_examples=60)
+@given(queries(), st.sampled_from(["cells", "integer"]), st.booleans())
+def test_routes_are_cheapest(query, name, noisy):
+    terrain, rng = terrain_of(query, name), query[-1]
+    work = make_work(terrain)
+    useful = np.flatnonzero(terrain.useful)
+    for _ in range(10):
+        weight = rng.integers(1, 1025, 2)
+        noise = np.array([rng.integers(1, 8000), rng.integers(0, 4), rng.integers(0, 2**31)]) * noisy
+        source, target = (int(cell) for cell in rng.choice(useful, 2))
+        margin = int(rng.choice([0, 1, EVERYWHERE]))
+        (sx, sy), (tx, ty) = (divmod(cell, terrain.width)[::-1] for cell in (source, target))
+        box = min(sx, tx) - margin, max(sx, tx) + margin, min(sy, ty) - margin, max(sy, ty) + margin
+        graph = graph_of(terrain, weight, [int(v) for v in noise], box)
+        least = csgraph.dijkstra(graph, indices=source)[target]
+        found = find_route(terrain, work, source, target, weight, noise, margin, EVERYWHERE)
+        assert found == np.isfinite(least)
+        if found:
+            path, n = unwind(terrain, work, source, target, np.array([source]), 1)
+            assert path[0] == source and path[n - 1] == target
+            assert cost_of(graph, path[:n].tolist()) == least
+
+
+def test_a_search_for_all_cells_finds_cheapest_routes_to_all():
+    rng = np.random.default_rng(5)
+    terrain = terrain_of((SPIRAL.replace(occupied=np.zeros((7, 9))), (0, 0), (8, 6), "auto", rng), "cells")
+    work, weight, noise = make_work(terrain), np.array([300, 700]), np.array([4000, 1, 77])
+    find_route(terrain, work, terrain.start, NOWHERE, weight, noise, EVERYWHERE, EVERYWHERE)
+    graph = graph_of(terrain, weight, noise.tolist())
+    assert np.array_equal(work.cost, csgraph.dijkstra(graph, indices=terrain.start))
+
+
+@settings(max_examples=30)
+@given(queries(), st.sampled_from(["cells", "integer"]))
+def test_the_bound_of_the_rest_is_consistent(query, name):
+    terrain, rng = terrain_of(query, name, 2), query[-1]
+    weight = rng.integers(1, 1025, 3)
+    target = int(rng.choice(np.flatnonzero(terrain.useful)))
+
+    def rest(cell):
+        (x, y), (tx, ty) = (divmod(c, terrain.width)[::-1] for c in (cell, target))
+        return least_rest(terrain, weight, cell, target, abs(tx - x), abs(ty - y))
+
+    graph = graph_of(terrain, weight).tocoo()
+    assert rest(target) == 0
+    for a, b, cost in zip(*graph.coords, graph.data, strict=True):
+        assert rest(int(a)) <= cost + rest(int(b))
+
+
+def test_searches_give_up_at_their_limit_and_at_walls():
+    moves = Moves(SPIRAL.replace(occupied=np.zeros((20, 20))))
+    terrain = plain_terrain(moves, 0, 399)
+    work, weight, none = make_work(terrain), np.array([1024]), np.zeros(3, dtype=np.int64)
+    assert find_route(terrain, work, 0, 399, weight, none, EVERYWHERE, 30)
+    assert not find_route(terrain, work, 0, 399, weight, none, EVERYWHERE, 10)
+    wall = np.zeros((5, 5))
+    wall[:4, 2] = 1
+    terrain = plain_terrain(Moves(SPIRAL.replace(occupied=wall)), 0, 4)
+    assert not find_route(terrain, work, 0, 4, weight, none, 3, EVERYWHERE)
+    assert find_route(terrain, work, 0, 4, weight, none, 4, EVERYWHERE)
+    assert not find_route(terrain, work, 0, 7, weight, none, 4, EVERYWHERE), "an occupied cell"
+
+
+def test_noise_is_even():
+    x, y = np.meshgrid(np.arange(60), np.arange(60))
+    for seed in (0, 1, 2**31 - 1):
+        values = np.array([block_noise(a, b, seed) for a, b in zip(x.ravel().tolist(), y.ravel().tolist(), strict=True)])
+        assert values.min() >= 0 and values.max() <= 1023
+        assert values.mean() == pytest.approx(511.5, abs=25)
+        assert values.std() == pytest.approx(1024 / 12**0.5, rel=0.05)
+        grid = values.reshape(60, 60)
+        for neighbour in (grid[1:, :-1], grid[:-1, 1:]):
+            assert abs(np.corrcoef(grid[:-1, :-1].ravel(), neighbour.ravel())[0, 1]) < 0.06
