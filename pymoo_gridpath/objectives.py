@@ -43,7 +43,7 @@ class Objective(ABC):
 
         Parameters
         ----------
-        paths : ColumnPaths
+        paths : ColumnPaths or CellPaths
             N paths.
         sums : numpy.ndarray or None
             What the representation prepared from `field`.

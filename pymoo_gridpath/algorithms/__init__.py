@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability, capability_table
+from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.factory import make_algorithm, reference_directions
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.algorithms.paper import Setup, ahmed_deb_2013
@@ -13,6 +14,7 @@ from pymoo_gridpath.algorithms.termination import FirstLegalPath
 __all__ = [
     "CAPABILITIES",
     "Capability",
+    "ExactFront",
     "FirstLegalPath",
     "Setup",
     "SmoothMOEAD",

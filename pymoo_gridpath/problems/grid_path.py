@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 from pymoo.core.problem import Problem
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import CapabilityError, GridPathError
+from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective, make_objectives
@@ -17,6 +19,9 @@ from pymoo_gridpath.representations import Representation, make_representation
 Obstacles = Literal["penalty", "constraint", "limit"]
 # Chosen by measurement on the shipped maps and random grids, see the parameter.
 DEFAULT_PENALTY = 2.0
+
+# How long pareto_front() may take, since pymoo asks for it unbidden.
+PARETO_SECONDS = 60.0
 
 # Genes that are evaluated at a time.
 PART_SIZE = 12000
@@ -32,8 +37,9 @@ class GridPathProblem(Problem):
     grid : OccupancyGrid
     start, goal : (int, int)
         Free cells (x, y).
-    representation : {"integer", "binary", "mixed", "absolute"} or Representation, default "integer"
-        How a path is coded as decision variables.
+    representation : {"integer", "binary", "mixed", "absolute", "cells"} or Representation, default "integer"
+        How a path is coded as decision variables. The first four are those of the paper, for paths that never turn back;
+        "cells" codes every path, see `CellSequence`, and needs operators of its own.
     objectives : sequence of str or Objective, default ("length", "vulnerability")
         What is minimised, in this order; names are "length", "vulnerability" and "turn".
     obstacles : {"penalty", "constraint", "limit"}, default "penalty"
@@ -69,6 +75,12 @@ class GridPathProblem(Problem):
 
     Notes
     -----
+    ``pareto_front()`` and ``pareto_set()`` return the exact front of the legal paths, without penalties, and a path for each
+    point (see `exact_front`; the first call computes both). They return None if an objective does not add up along a path,
+    that is, if it is neither length nor turn and has no field; if there are more than three objectives; or, with a warning,
+    if ``max_seconds`` (60 by default) do not suffice. pymoo asks for the front of its own accord where it prints progress
+    (``verbose=True``), to show how far a run is from it.
+
     Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
     ``interfering_cells`` of each individual: ``pop.get("turn")``. It draws no random number.
 
@@ -115,6 +127,7 @@ class GridPathProblem(Problem):
         else:
             self._check_representation(representation, axis)
         self.representation = representation
+        self._front: ExactResult | None = None
         fields = [objective.field(grid) for objective in self.objectives]
         self._sums = [None if field is None else representation.prepare(field) for field in fields]
         super().__init__(
@@ -157,8 +170,36 @@ class GridPathProblem(Problem):
         """Names of the objectives in the order of the columns of F."""
         return [objective.name for objective in self.objectives]
 
+    # -- the exact front ----------------------------------------------------------------------------------------------
+
+    def _calc_pareto_front(self, max_seconds: float = PARETO_SECONDS):
+        found = self._exact(max_seconds)
+        return None if found is None else found.F
+
+    def _calc_pareto_set(self, max_seconds: float = PARETO_SECONDS):
+        found = self._exact(max_seconds)
+        return None if found is None else found.X
+
+    def _exact(self, max_seconds: float) -> ExactResult | None:
+        """Return the exact front, kept for the next call, or None if there is none or the time is too short."""
+        if self._front is None:
+            try:
+                found = exact_front(self, Budget(seconds=max_seconds))
+            except CapabilityError:
+                return None
+            if not found.complete:
+                warnings.warn(
+                    f"no Pareto front: the search {found.message}; ask for pareto_front(max_seconds=..., use_cache=False)",
+                    stacklevel=5,
+                )
+                return None
+            self._front = found
+        return self._front
+
+    # -- measures -----------------------------------------------------------------------------------------------------
+
     def decode(self, X: np.ndarray):
-        """Return the paths that the rows of X code, see `ColumnPaths`."""
+        """Return the paths that the rows of X code, see `ColumnPaths` and `CellPaths`."""
         return self.representation.decode(X)
 
     def score(self, paths) -> np.ndarray:
@@ -167,7 +208,7 @@ class GridPathProblem(Problem):
 
     def _evaluate(self, x, out, *args, **kwargs):
         # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
-        n_parts = max(1, round(len(x) * self.n_var / PART_SIZE))
+        n_parts = min(max(1, round(len(x) * self.n_var / PART_SIZE)), max(1, len(x)))
         parts = [self._measure(part) for part in np.array_split(x, n_parts)]
         F, turn, interfering = (np.concatenate(values) for values in zip(*parts, strict=True))
         if self.obstacles == "penalty":

@@ -8,14 +8,15 @@ import pytest
 import reference
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
+from queries import SPIRAL
 
 from pymoo_gridpath.errors import GridPathError, UnreachableError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Length, Objective, Vulnerability
-from pymoo_gridpath.operators import paper_operators
+from pymoo_gridpath.operators import RandomSampling, paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.problems import grid_path as module
-from pymoo_gridpath.representations import make_representation
+from pymoo_gridpath.representations import CellSequence, make_representation
 
 GRID = random_dense_grid(12, 0.3, 4)
 START, GOAL = (0, 0), (11, 11)
@@ -83,16 +84,19 @@ def test_evaluation_in_parts_equals_evaluation_at_once(monkeypatch):
     assert np.array_equal(np.vstack([problem.evaluate(x) for x in X]), whole)
 
 
+class Cells(Objective):
+    """The number of visited cells, as an objective of a user's own."""
+
+    name, label = "cells", "Cells visited"
+
+    def field(self, grid):
+        return np.ones(grid.shape)
+
+    def __call__(self, paths, sums):
+        return paths.total(sums)
+
+
 def test_objectives_of_ones_own():
-    class Cells(Objective):
-        name, label = "cells", "Cells visited"
-
-        def field(self, grid):
-            return np.ones(grid.shape)
-
-        def __call__(self, paths, sums):
-            return paths.total(sums)
-
     problem = GridPathProblem(GRID, START, GOAL, objectives=[Cells(), Length(), Vulnerability(2.0)], obstacles="constraint")
     X = genes(problem)
     paths = problem.decode(X)
@@ -101,9 +105,56 @@ def test_objectives_of_ones_own():
     assert F[0, 2] == pytest.approx(reference.vulnerability(paths.cells(0).tolist(), GRID, variance=2.0), abs=1e-6)
 
 
+@pytest.mark.parametrize("corner_cutting", [True, False])
+@pytest.mark.parametrize(
+    "options",
+    [{"obstacles": "penalty"}, {"obstacles": "constraint"}, {"obstacles": "limit", "potential_limit": 5.0}],
+)
+def test_the_same_paths_have_the_same_values_in_cells(options, corner_cutting):
+    grid = GRID if corner_cutting else OccupancyGrid(np.random.default_rng(2).random((12, 12)) < 0.15, corner_cutting=False)
+    integer = GridPathProblem(grid, START, GOAL, objectives=("length", "vulnerability", "turn", Cells()), **options)
+    coding = CellSequence(grid, START, GOAL, max_cells=grid.occupied.size)
+    cells = GridPathProblem(grid, START, GOAL, coding, integer.objectives, **options)
+    X = genes(integer)
+    expected = integer.evaluate(X, return_as_dictionary=True)
+    found = cells.evaluate(coding.encode(integer.decode(X)), return_as_dictionary=True)
+    assert (expected["interfering_cells"] > 0).any()
+    for key in expected:
+        assert np.array_equal(found[key], expected[key]), key
+
+
+def test_rows_that_are_no_paths_are_never_legal():
+    problem = GridPathProblem(GRID, START, GOAL, "cells", ("length", "vulnerability", "turn"), penalty=100.0)
+    X = RandomSampling()._do(problem, 30, random_state=np.random.default_rng(0))
+    out = problem.evaluate(X, return_as_dictionary=True)
+    field = reference.potential(GRID)
+    for row, F, interfering in zip(X, out["F"], out["interfering_cells"], strict=True):
+        cells = reference.visited(row, GRID.width)
+        assert interfering == reference.broken_cells(cells, GRID) > 0
+        plain = [reference.octile_length(cells), sum(field[y, x] for x, y in cells), reference.sign_turn(cells)]
+        assert pytest.approx(plain + np.array([100.0, 100.0, 4500.0]) * interfering, abs=1e-6) == F
+
+
+def test_a_path_that_turns_back_is_found_in_cells():
+    problem = GridPathProblem(SPIRAL, (0, 0), (2, 2), "cells")
+    repaired = problem.representation.repair(np.zeros((1, problem.n_var), dtype=int), np.random.default_rng(0))
+    assert problem.evaluate(repaired)[0, 0] == 16.0
+    result = minimize(problem, NSGA2(pop_size=10), ("n_gen", 3), seed=1)
+    assert np.isfinite(result.F).all()
+
+
+def test_rows_longer_than_a_part_are_evaluated(monkeypatch):
+    problem = GridPathProblem(GRID, START, GOAL, "cells")
+    X = RandomSampling()._do(problem, 5, random_state=np.random.default_rng(0))
+    whole = problem.evaluate(X)
+    monkeypatch.setattr(module, "PART_SIZE", problem.n_var // 3)
+    assert np.array_equal(problem.evaluate(X), whole)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        ({"representation": "cells", "axis": "x"}, "axis is 'x', but paths of the cells representation advance along none"),
         ({"objectives": ("lenght",)}, "no objective 'lenght'; did you mean 'length'"),
         ({"objectives": ()}, "expected one or more"),
         ({"objectives": ("length", "length")}, "each once"),
@@ -156,8 +207,9 @@ def test_stock_nsga2_just_works_on_real_genes():
 
 
 @pytest.mark.parametrize("clone", [copy.deepcopy, lambda p: pickle.loads(pickle.dumps(p))])
-def test_copies_evaluate_the_same(clone):
-    problem = GridPathProblem(GRID, START, GOAL, "mixed", obstacles="constraint")
+@pytest.mark.parametrize("representation", ["mixed", "cells"])
+def test_copies_evaluate_the_same(clone, representation):
+    problem = GridPathProblem(GRID, START, GOAL, representation, obstacles="constraint")
     X = genes(problem)
     assert all(np.array_equal(a, b) for a, b in zip(problem.evaluate(X), clone(problem).evaluate(X), strict=True))
 
@@ -207,3 +259,8 @@ def test_operators_fit_any_pymoo_algorithm():
     result = minimize(problem, NSGA2(pop_size=40, **paper_operators(problem)), ("n_gen", 30), seed=1)
     assert result.pop.get("X").dtype.kind == "i"
     assert (result.pop.get("interfering_cells") == 0).any()
+
+
+def test_the_papers_operators_are_refused_for_cells():
+    with pytest.raises(GridPathError, match=r"no operators for the cells representation.*path_operators"):
+        paper_operators(GridPathProblem(GRID, START, GOAL, "cells"))

@@ -1,0 +1,8 @@
+"""Exact Pareto fronts of objectives that add up along a path."""
+
+from __future__ import annotations
+
+from pymoo_gridpath.exact.budget import Budget
+from pymoo_gridpath.exact.front import ExactResult, exact_front
+
+__all__ = ["Budget", "ExactResult", "exact_front"]

@@ -1,0 +1,127 @@
+"""The exact Pareto front of a path problem."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pymoo_gridpath.errors import CapabilityError, GridPathError
+from pymoo_gridpath.exact.budget import Budget, Meter
+from pymoo_gridpath.exact.costs import Costs, integer_costs
+from pymoo_gridpath.exact.three import front_of_three
+from pymoo_gridpath.exact.two import Front, front_of_two
+from pymoo_gridpath.objectives import Length, Turn
+from pymoo_gridpath.search.sequences import Sequences
+
+# Labels hold the cell in 28 bits.
+_MOST_CELLS = 2**28
+
+# By how much a score may differ from the sum that was minimised.
+_SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class ExactResult:
+    """The Pareto front of a problem, or the part of it that a budget allowed.
+
+    Attributes
+    ----------
+    X : numpy.ndarray, shape (N, n_var)
+        A path for each point, as genes.
+    F : numpy.ndarray of float, shape (N, n_obj)
+        The front, in ascending order of the first objective, no point twice.
+    complete : bool
+        Whether this is the whole front.
+    message : str
+        How the search ended.
+    n_labels, n_bytes : int
+        The most labels at a time, and the bytes that they took.
+    seconds : float
+        Time that the search took.
+    """
+
+    X: np.ndarray
+    F: np.ndarray
+    complete: bool
+    message: str
+    n_labels: int
+    n_bytes: int
+    seconds: float
+
+
+def exact_front(problem, budget: Budget | None = None) -> ExactResult:
+    """Return the Pareto front of the legal paths of a problem.
+
+    Legal paths cross no occupied cell and, with ``obstacles="limit"``, keep the potential limit. Those of a monotone
+    representation never turn back along its axis.
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+        With one to three objectives that add up along a path: length, turn, and sums of a field over the visited cells.
+    budget : Budget, optional
+        What the search may use; by default 70 % of the free memory, and as long as it takes.
+
+    Raises
+    ------
+    CapabilityError
+        If there are more than three objectives or one does not add up, see `integer_costs`.
+    GridPathError
+        If the representation cannot code a path of the front, or a score is not the sum that its field says.
+
+    Examples
+    --------
+    >>> from pymoo_gridpath import GridPathProblem, OccupancyGrid
+    >>> grid = OccupancyGrid([[0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]])
+    >>> found = exact_front(GridPathProblem(grid, (0, 0), (3, 3)))
+    >>> found.complete, found.F.round(2).tolist()
+    (True, [[5.41, 0.66]])
+    """
+    if problem.n_obj > 3:
+        raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
+    moves = problem.representation.moves
+    if moves.n_cells >= _MOST_CELLS:
+        raise CapabilityError(f"the grid has {moves.n_cells:,} cells, expected fewer than {_MOST_CELLS:,} for an exact front")
+    costs = integer_costs(problem.objectives, problem.grid)
+    # Searches are quickest with the length first, and turns have to come last.
+    order = sorted(range(problem.n_obj), key=lambda k: _place(problem.objectives[k]))
+    meter = Meter(budget or Budget())
+    start, goal = moves.index(problem.start), moves.index(problem.goal)
+    if problem.n_obj == 3:
+        front = front_of_three(moves, costs.take(order), start, goal, meter)
+    else:
+        # A single objective is searched as two equal ones.
+        front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
+    points = front.points[:, np.argsort(order)]
+    seconds = meter.elapsed
+    X, F = _scored(problem, costs, front, points)
+    message = f"ended early, {meter.message}; {len(F)} paths found" if meter.message else f"all {len(F)} points found"
+    return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds)
+
+
+def _place(objective) -> int:
+    if type(objective) is Length:
+        return 0
+    return 2 if type(objective) is Turn else 1
+
+
+def _scored(problem, costs: Costs, front: Front, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return genes and objectives of paths in ascending order, without those that exceed a potential limit."""
+    offsets = np.cumsum([0, *(len(path) for path in front.paths)])
+    cells = np.concatenate(front.paths) if front.paths else np.empty(0, dtype=np.int64)
+    X = problem.representation.from_sequences(Sequences(cells, offsets))
+    F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
+    start = costs.field[:, problem.representation.moves.index(problem.start)]
+    expected = (points + start) * costs.unit
+    if not np.allclose(F, expected, rtol=_SAME, atol=_SAME):
+        wrong = np.flatnonzero(~np.isclose(F, expected, rtol=_SAME, atol=_SAME).all(axis=0))[0]
+        raise GridPathError(
+            f"the objective {problem.objective_names[wrong]!r} scores a path otherwise than by the sum of its field over the "
+            f"visited cells, expected a field of None then"
+        )
+    keep = np.lexsort(F.T[::-1])
+    if problem.obstacles == "limit":
+        k = problem.objective_names.index("vulnerability")
+        keep = keep[F[keep, k] <= problem.potential_limit]
+    return X[keep], F[keep]

@@ -1,0 +1,425 @@
+"""The exact front of two objectives: a label-setting search in the line of BOA*, with bounds from the hull of the front.
+
+The search is BOA* (labels popped in ascending order of f1, so that one number a state, the least g2 so far, tells whether a
+label is dominated), with three additions that leave the result as it is:
+
+- A label must be able to end below the staircase of paths that are known already. Between two neighbouring points of the
+  hull, its cheapest weighted completion has to stay below the furthest corner of the staircase there (the second phase of the
+  two-phase method).
+- Two passes with a tolerance find paths near the front first, which make the staircase fine.
+- A step is skipped if the cell before led straight to its end: the detour is dominated.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.exact.budget import Meter
+from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.supported import Hull, supported_points
+from pymoo_gridpath.search import HEADINGS, UNREACHABLE, Moves
+from pymoo_gridpath.search.heap import drop_first, push
+
+# Why a kernel returned.
+DONE, HEAP_FULL, CLOSED_FULL, FOUND_FULL, PAUSED = range(5)
+
+# Places in the array of counts.
+N_OPEN, N_CLOSED, N_FOUND, N_POPPED, BEST2, NEXT_CORNER, GAP = range(7)
+
+# Columns of the array of states.
+LEAST2, BOUND1, BOUND2, FIELD1, FIELD2 = range(5)
+
+# Weighted sums are floats: a label is dropped only if it misses its mark by more than their rounding.
+_ROUNDING = 1e-12
+
+# The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
+_TOLERANCES = (0.005, 0.0005)
+
+_POPS_AT_A_TIME = 2**18
+_GROWTH = 1.25
+
+
+class Front(NamedTuple):
+    """Non-dominated paths in ascending order of the first objective.
+
+    Attributes
+    ----------
+    paths : list of numpy.ndarray
+        Indices of the cells of each, from the start to the goal.
+    points : numpy.ndarray of int64, shape (N, k)
+        Their costs, without that of the start cell.
+    """
+
+    paths: list[np.ndarray]
+    points: np.ndarray
+
+
+def direct_headings() -> np.ndarray:
+    """Return the heading of the one step that does what two do, int64, shape (8, 8).
+
+    8 where the second step leads back, -1 where no single step does.
+    """
+    known = {(int(dx), int(dy)): m for m, (dx, dy) in enumerate(HEADINGS)}
+    known[0, 0] = 8
+    sums = HEADINGS[:, None] + HEADINGS[None, :]
+    return np.array([[known.get((int(dx), int(dy)), -1) for dx, dy in row] for row in sums], dtype=np.int64)
+
+
+def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, n_weights: int = 16) -> Front:
+    """Return the exact front of two objectives.
+
+    Parameters
+    ----------
+    moves : Moves
+    costs : Costs
+        Of two objectives; if one depends on headings, it comes faster as the second.
+    start, goal : int
+    meter : Meter
+        Ends the search when a budget is used up; the best paths found by then are returned.
+    n_weights : int, default 16
+        See `supported_points`.
+
+    References
+    ----------
+    C. Hernandez Ulloa, W. Yeoh, J. A. Baier, H. Zhang, L. Suazo and S. Koenig, "A simple and fast bi-objective search
+    algorithm", ICAPS 2020 (BOA*). E. L. Ulungu and J. Teghem, "The two phases method", Foundations of Computing and
+    Decision Sciences 20(2), 1995.
+    """
+    hull = supported_points(moves, costs, start, goal, n_weights)
+    known, searches = hull.points, []
+    for tolerance in (*_TOLERANCES, 0.0):
+        searches.append(_Search(moves, costs, start, goal, hull, known))
+        searches[-1].run(meter, tolerance)
+        if meter.message:
+            return _merged(searches)
+        known = _non_dominated(np.concatenate([known, searches[-1].points()]))
+    return Front(searches[-1].paths(), searches[-1].points())
+
+
+def _merged(searches: list[_Search]) -> Front:
+    """Return what is non-dominated of all that was found."""
+    points = np.concatenate([search.points() for search in searches])
+    paths = [path for search in searches for path in search.paths()]
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    best_before = np.concatenate([[UNREACHABLE], np.minimum.accumulate(points[order, 1])])[: len(order)]
+    keep = order[points[order, 1] < best_before]
+    return Front([paths[k] for k in keep], points[keep])
+
+
+def _non_dominated(points: np.ndarray) -> np.ndarray:
+    points = points[np.lexsort((points[:, 1], points[:, 0]))]
+    best_before = np.concatenate([[UNREACHABLE], np.minimum.accumulate(points[:-1, 1])])
+    return points[points[:, 1] < best_before]
+
+
+class _Search:
+    """The arrays of one search, which grow between calls of the kernel."""
+
+    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, hull: Hull, known: np.ndarray):
+        self.moves, self.costs, self.start, self.goal = moves, costs, start, goal
+        n_states = hull.bounds.shape[1]
+        self.states = np.empty((n_states, 5), dtype=np.int64)
+        self.states[:, LEAST2] = UNREACHABLE
+        self.states[:, BOUND1], self.states[:, BOUND2] = hull.bounds
+        repeat = n_states // moves.n_cells
+        self.states[:, FIELD1], self.states[:, FIELD2] = np.repeat(costs.field, repeat, axis=1)
+        self.hull = hull
+        self.corners, self.marks = _corners(hull, known)
+        self.heap = np.empty((1024, 3), dtype=np.int64)
+        self.closed = np.empty((1024, 2), dtype=np.int32)
+        self.found = np.empty((64, 3), dtype=np.int64)
+        self.counts = np.zeros(7, dtype=np.int64)
+        self.counts[BEST2] = UNREACHABLE
+        self._open_first_steps()
+
+    def _open_first_steps(self) -> None:
+        self.closed[0] = (self.start, -1)
+        self.counts[N_CLOSED] = 1
+        with_heading = self.costs.with_heading
+        if not with_heading:
+            self.states[self.start, LEAST2] = 0
+        for m in range(8):
+            if self.moves.legal[self.start] >> m & 1:
+                cell = self.start + int(self.moves.offsets[m])
+                state = self.states[8 * cell + m if with_heading else cell]
+                f1 = self.costs.step[0, 8, m] + state[FIELD1] + state[BOUND1]
+                f2 = self.costs.step[1, 8, m] + state[FIELD2] + state[BOUND2]
+                if f1 < UNREACHABLE:
+                    push(self.heap, self.counts[N_OPEN], f1, f2, (8 * cell + m) << 32)
+                    self.counts[N_OPEN] += 1
+
+    def run(self, meter: Meter, tolerance: float) -> None:
+        """Search until no label is left or a budget is used up."""
+        status = PAUSED
+        while status != DONE:
+            meter.check(self.n_labels, self.nbytes)
+            if meter.message:
+                return
+            status = search_two(
+                self.moves.legal,
+                self.moves.offsets,
+                self.costs.step,
+                self.costs.with_heading,
+                direct_headings(),
+                self.states,
+                self.goal,
+                self.hull.weights,
+                self.hull.weighted,
+                self.corners,
+                self.marks,
+                self.heap,
+                self.closed,
+                self.found,
+                self.counts,
+                self.hull.points[0, 1],
+                self.hull.points[-1, 1],
+                tolerance,
+                meter.pops(self.n_labels, _POPS_AT_A_TIME),
+            )
+            meter.note(self.n_labels, self.nbytes)
+            if status == HEAP_FULL:
+                grow(self.heap)
+            elif status == CLOSED_FULL:
+                grow(self.closed)
+            elif status == FOUND_FULL:
+                grow(self.found)
+
+    @property
+    def n_labels(self) -> int:
+        """Labels open and closed."""
+        return int(self.counts[N_OPEN] + self.counts[N_CLOSED])
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the arrays that grow with the labels."""
+        return self.heap.nbytes + self.closed.nbytes + self.found.nbytes
+
+    def points(self) -> np.ndarray:
+        """Return the costs of the paths found, int64, shape (N, 2)."""
+        return self.found[: self.counts[N_FOUND], 1:].copy()
+
+    def paths(self) -> list[np.ndarray]:
+        """Return the cells of the paths found."""
+        return [trace(self.closed, int(number)) for number in self.found[: self.counts[N_FOUND], 0]]
+
+
+def grow(array: np.ndarray) -> None:
+    """Give an array a quarter more rows, without a copy beside it where the system can do so."""
+    rows = int(len(array) * _GROWTH) + 64
+    array.resize((rows, *array.shape[1:]), refcheck=False)
+
+
+def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners of the staircase of known points, and what labels must stay below in each gap of the hull.
+
+    Returns
+    -------
+    corners : numpy.ndarray of float, shape (n, 3)
+        f1 and f2 that a new point stays below, and the gap that the corner lies in, ascending. A corner lies one unit beyond
+        the known points, which have to be found again.
+    marks : numpy.ndarray of float, shape (n_gaps, 3)
+        Least upper bounds of the weighted sum, of f1 and of f2 over the corners of each gap; the kernel lowers them.
+    """
+    n_gaps = len(hull.weights)
+    beyond, above = (known[1:, 0], known[:-1, 1]) if len(known) > 1 else (known[:, 0], known[:, 1])
+    corners = np.empty((len(beyond), 3))
+    corners[:, 0], corners[:, 1] = beyond + 1, above + 1
+    corners[:, 2] = np.minimum(np.searchsorted(hull.points[1:, 0], beyond), n_gaps - 1)
+    marks = np.full((n_gaps, 3), -1.0)
+    for j in range(n_gaps):
+        mine = corners[corners[:, 2] == j, :2]
+        if len(mine):
+            marks[j, 0] = (mine @ hull.weights[j]).max() * (1 + _ROUNDING)
+            marks[j, 1:] = mine.max(axis=0)
+    return corners, marks
+
+
+@kernel
+def promising(f1, f2, g1, g2, weighted, weights, marks, gap):
+    """Whether a label can end below the staircase of known points in one of the gaps from ``gap`` on."""
+    for j in range(gap, len(weights)):
+        if f1 < marks[j, 1] and f2 < marks[j, 2] and weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[j] < marks[j, 0]:
+            return True
+    return False
+
+
+@kernel
+def lower_marks(corners, weights, marks, counts, f1):
+    """Leave behind the corners that labels from ``f1`` on cannot reach, and lower the marks of the gap where f1 lies."""
+    first = counts[NEXT_CORNER]
+    while first < len(corners) and corners[first, 0] <= f1:
+        first += 1
+    counts[NEXT_CORNER] = first
+    gap = len(marks) if first == len(corners) else int(corners[first, 2])
+    counts[GAP] = gap
+    if gap == len(marks):
+        return
+    best2 = float(counts[BEST2])
+    marks[gap, 0] = -1.0
+    marks[gap, 2] = -1.0
+    for k in range(first, len(corners)):
+        if corners[k, 2] != gap:
+            break
+        second = min(corners[k, 1], best2)
+        total = (weights[gap, 0] * corners[k, 0] + weights[gap, 1] * second) * (1.0 + 1e-12)
+        marks[gap, 0] = max(marks[gap, 0], total)
+        marks[gap, 2] = max(marks[gap, 2], second)
+
+
+@kernel
+def search_two(
+    legal,
+    offsets,
+    step,
+    with_heading,
+    direct,
+    states,
+    goal,
+    weights,
+    weighted,
+    corners,
+    marks,
+    heap,
+    closed,
+    found,
+    counts,
+    most_f2,
+    least_f2,
+    tolerance,
+    max_pops,
+):
+    """Pop labels in ascending order of (f1, f2) until none is left, an array is full, or ``max_pops`` have been popped.
+
+    A label is a path from the start to a cell; f is its cost g so far plus the lower bound of the rest.
+
+    Parameters
+    ----------
+    legal, offsets
+        See `Moves`.
+    step : int64, shape (2, 9, 8)
+        See `Costs`.
+    with_heading : bool
+    direct : int64, shape (8, 8)
+        See `direct_headings`.
+    states : int64, shape (n_cells, 5), or (8 * n_cells, 5) with headings
+        Least g2 of the closed labels, lower bounds of the rest in both objectives, costs of the cell in both.
+    goal : int
+        The goal cell.
+    weights, weighted, corners, marks
+        See `Hull` and `_corners`.
+    heap : int64, shape (n, 3)
+        Open labels: f1, f2 and ``(8 * cell + heading) << 32 | parent``.
+    closed : int32, shape (n, 2)
+        Closed labels: cell and number of the parent.
+    found : int64, shape (n, 3)
+        Numbers of the closed labels that are non-dominated paths, and their costs.
+    counts : int64, shape (7,)
+        State of the search, changed in place like all arrays from ``marks`` on, and ``states``.
+    most_f2, least_f2 : int
+        Second objective of the ends of the front.
+    tolerance : float
+        A label must improve on the least g2 of its state by more than this share of what the second objective of the last
+        path found is above ``least_f2``; 0 for the exact front.
+    max_pops : int
+    """
+    n, n_closed = counts[N_OPEN], counts[N_CLOSED]
+    slack = np.int64(tolerance * (min(counts[BEST2], most_f2) - least_f2))
+    status = DONE
+    pops = 0
+    while n > 0:
+        if n + 8 > len(heap):
+            status = HEAP_FULL
+            break
+        if n_closed >= len(closed):
+            status = CLOSED_FULL
+            break
+        if counts[N_FOUND] >= len(found):
+            status = FOUND_FULL
+            break
+        if pops >= max_pops:
+            status = PAUSED
+            break
+        pops += 1
+        f1 = heap[0, 0]
+        f2 = heap[0, 1]
+        load = heap[0, 2]
+        drop_first(heap, n)
+        n -= 1
+        if f2 >= counts[BEST2]:
+            continue
+        heading = (load >> 32) & 7
+        cell = load >> 35
+        state = load >> 32 if with_heading else cell
+        g2 = f2 - states[state, BOUND2]
+        if g2 >= states[state, LEAST2] - slack:
+            continue
+        g1 = f1 - states[state, BOUND1]
+        if counts[NEXT_CORNER] < len(corners) and corners[counts[NEXT_CORNER], 0] <= f1:
+            lower_marks(corners, weights, marks, counts, f1)
+        if not promising(f1, f2, g1, g2, weighted[state], weights, marks, counts[GAP]):
+            continue
+        if with_heading:
+            # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
+            for h in range(8):
+                turned = g2 + step[1, heading, h]
+                if turned < states[8 * cell + h, LEAST2]:
+                    states[8 * cell + h, LEAST2] = turned
+        states[state, LEAST2] = g2
+        closed[n_closed, 0] = cell
+        closed[n_closed, 1] = load & 0xFFFFFFFF
+        if cell == goal:
+            counts[BEST2] = g2
+            slack = np.int64(tolerance * (g2 - least_f2))
+            found[counts[N_FOUND], 0] = n_closed
+            found[counts[N_FOUND], 1] = f1
+            found[counts[N_FOUND], 2] = f2
+            counts[N_FOUND] += 1
+            n_closed += 1
+            lower_marks(corners, weights, marks, counts, f1)
+            continue
+        from_before = legal[cell - offsets[heading]]
+        before = heading if with_heading else 8
+        for m in range(8):
+            if not (legal[cell] >> m) & 1:
+                continue
+            straight = direct[heading, m]
+            if straight == 8 or (straight >= 0 and (from_before >> straight) & 1):
+                continue
+            next_cell = cell + offsets[m]
+            next_state = 8 * next_cell + m if with_heading else next_cell
+            next2 = g2 + step[1, before, m] + states[next_state, FIELD2]
+            if next2 >= states[next_state, LEAST2] - slack:
+                continue
+            next_f2 = next2 + states[next_state, BOUND2]
+            if next_f2 >= counts[BEST2]:
+                continue
+            next1 = g1 + step[0, before, m] + states[next_state, FIELD1]
+            next_f1 = next1 + states[next_state, BOUND1]
+            if next_f1 >= 2**61:
+                continue
+            if promising(next_f1, next_f2, next1, next2, weighted[next_state], weights, marks, counts[GAP]):
+                push(heap, n, next_f1, next_f2, (8 * next_cell + m) << 32 | n_closed)
+                n += 1
+        n_closed += 1
+    counts[N_OPEN], counts[N_CLOSED] = n, n_closed
+    counts[N_POPPED] += pops
+    return status
+
+
+@kernel
+def trace(closed, number):
+    """Return the cells of the path that ends with a closed label, int64."""
+    n = 0
+    label = number
+    while label >= 0:
+        n += 1
+        label = closed[label, 1]
+    cells = np.empty(n, dtype=np.int64)
+    label = number
+    for k in range(n - 1, -1, -1):
+        cells[k] = closed[label, 0]
+        label = closed[label, 1]
+    return cells

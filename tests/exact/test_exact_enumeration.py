@@ -1,0 +1,220 @@
+"""Exact fronts against the enumeration of all paths, and against a search that keeps every non-dominated label."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from pymoo_gridpath import GridPathProblem, OccupancyGrid
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.exact import exact_front
+from pymoo_gridpath.fields import obstacle_potential
+from pymoo_gridpath.objectives import Objective
+from pymoo_gridpath.representations import CellSequence
+
+STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
+N_GRIDS = 500
+
+
+class Cost(Objective):
+    """The sum of random whole costs of cells, which lead to larger fronts, and to more ties, than potentials do."""
+
+    def __init__(self, name, values):
+        self.name = self.label = name
+        self.values = values
+
+    def field(self, grid):
+        return self.values
+
+    def __call__(self, paths, sums):
+        return paths.total(sums).astype(float)
+
+
+def objectives_of(grid, seed):
+    """Return lists of objectives, and the fields of those that have one."""
+    random_state = np.random.default_rng(seed)
+    wet, steep = (Cost(name, random_state.integers(0, 20, size=grid.shape)) for name in ("wet", "steep"))
+    fields = {"vulnerability": obstacle_potential(grid), "wet": wet.values, "steep": steep.values}
+    sets = [
+        ("length", "vulnerability"),
+        ("turn", "length"),
+        ("length", wet),
+        (wet, steep),
+        ("vulnerability", "turn"),
+        (wet, "length", "turn"),
+        ("vulnerability", "length", "turn"),
+        ("length", wet, steep),
+    ]
+    return sets, fields
+
+
+def legal_steps(grid, cell, headings):
+    x, y = cell
+    for m in headings:
+        dx, dy = STEPS[m]
+        corners_free = grid.corner_cutting or (grid.is_free((x + dx, y)) and grid.is_free((x, y + dy)))
+        if grid.is_free((x + dx, y + dy)) and (dx == 0 or dy == 0 or corners_free):
+            yield m, (x + dx, y + dy)
+
+
+def enumerate_paths(grid, start, goal, headings):
+    """Return (cells, straight steps, diagonal steps, turn in units of 45 degrees) of every path without a loop."""
+    found = []
+
+    def walk(cells, straight, diagonal, turn, heading):
+        if cells[-1] == goal:
+            found.append((tuple(cells), straight, diagonal, turn))
+            return
+        for m, after in legal_steps(grid, cells[-1], headings):
+            if after not in cells:
+                apart = 0 if heading is None else abs(m - heading)
+                walk([*cells, after], straight + 1 - m % 2, diagonal + m % 2, turn + min(apart, 8 - apart), m)
+
+    walk([start], 0, 0, 0, None)
+    return found
+
+
+def scores(paths, fields):
+    """Return every measure of paths by name."""
+    measures = {
+        "length": [straight + math.sqrt(2) * diagonal for _, straight, diagonal, _ in paths],
+        "turn": [45.0 * turn for *_, turn in paths],
+    }
+    for name, field in fields.items():
+        measures[name] = [sum(field[y, x] for x, y in cells) for cells, *_ in paths]
+    return measures
+
+
+def front_of(measures, names):
+    """Return the non-dominated rows, each once and in ascending order."""
+    front = []
+    # In ascending order no row is dominated by a later one.
+    for row in sorted(set(zip(*(measures[name] for name in names), strict=True))):
+        if not any(all(a <= b for a, b in zip(better, row, strict=True)) for better in front):
+            front.append(row)
+    return np.array(front, dtype=float)
+
+
+def random_case(seed):
+    """Return a random small query, its headings and a representation, or None if it has no answer."""
+    random_state = np.random.default_rng(seed)
+    height, width = random_state.integers(3, 6, size=2)
+    occupied = random_state.random((height, width)) < 0.2
+    # No more than 14 free cells, for the sake of the enumeration.
+    free = np.argwhere(~occupied)
+    for y, x in random_state.permutation(free)[14:]:
+        occupied[y, x] = True
+    free = sorted(((int(x), int(y)) for y, x in np.argwhere(~occupied)), key=sum)
+    if len(free) < 2:
+        return None
+    grid = OccupancyGrid(occupied, corner_cutting=bool(random_state.integers(2)))
+    start, goal = random_state.permutation([free[0], free[-1]]).tolist()
+    representation = str(random_state.choice(["cells", "integer", "absolute", "binary", "mixed"], p=[0.5, 0.2, 0.1, 0.1, 0.1]))
+    return grid, start, goal, representation
+
+
+def make_problem(case, objectives):
+    grid, start, goal, representation = case
+    if representation == "cells":
+        representation = CellSequence(grid, start, goal, max_cells=int((~grid.occupied).sum()))
+    return GridPathProblem(grid, start, goal, representation=representation, objectives=objectives)
+
+
+def headings_of(problem):
+    if problem.representation.name == "cells":
+        return range(8)
+    axis = "xy".index(problem.representation.frame.axis)
+    forward = np.sign(problem.goal[axis] - problem.start[axis])
+    return [m for m in range(8) if STEPS[m][axis] * forward >= 0]
+
+
+@pytest.fixture(scope="module")
+def solvable_seeds():
+    """Seeds of as many solvable queries as are promised, whatever share of the draws has no answer."""
+    seeds, seed = [], 0
+    while len(seeds) < N_GRIDS:
+        case = random_case(seed)
+        if case is not None:
+            try:
+                make_problem(case, ("length",))
+                seeds.append(seed)
+            except GridPathError:
+                pass
+        seed += 1
+    return seeds
+
+
+@pytest.mark.parametrize("part", range(10))
+def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
+    sizes = []
+    for seed in solvable_seeds[part::10]:
+        case = random_case(seed)
+        problem = make_problem(case, ("length",))
+        sets, fields = objectives_of(problem.grid, seed)
+        measures = scores(enumerate_paths(problem.grid, problem.start, problem.goal, headings_of(problem)), fields)
+        for objectives in sets:
+            problem = make_problem(case, objectives)
+            found, expected = exact_front(problem), front_of(measures, problem.objective_names)
+            assert found.complete
+            assert found.F.shape == expected.shape, (seed, problem.objective_names)
+            np.testing.assert_allclose(found.F, expected, rtol=1e-12, atol=1e-12, err_msg=f"grid {seed}, {objectives}")
+            out = problem.evaluate(found.X, return_as_dictionary=True)
+            np.testing.assert_array_equal(out["F"], found.F)
+            assert (out["interfering_cells"] == 0).all()
+            sizes.append(len(expected))
+    # The test would say little if all fronts were single points.
+    assert max(sizes) >= 4
+    assert np.mean(np.array(sizes) > 1) > 0.2
+
+
+def label_correction(grid, start, goal, headings, field):
+    """Return (length, field, turn) of the front of these three, by keeping every non-dominated label, in plain Python."""
+
+    def no_worse(a, b):
+        lengths = [straight + math.sqrt(2) * diagonal for straight, diagonal, *_ in (a, b)]
+        return lengths[0] <= lengths[1] + 1e-9 and a[2] <= b[2] and a[3] <= b[3]
+
+    first = (0, 0, int(field[start[1], start[0]]), 0)
+    labels = {(start, None): {first}}
+    queue = [(start, None, first)]
+    while queue:
+        cell, heading, label = queue.pop(0)
+        if label not in labels[cell, heading] or cell == goal:
+            continue
+        for m, after in legal_steps(grid, cell, headings):
+            apart = 0 if heading is None else abs(m - heading)
+            straight, diagonal, cost, turn = label
+            cost += int(field[after[1], after[0]])
+            new = (straight + 1 - m % 2, diagonal + m % 2, cost, turn + min(apart, 8 - apart))
+            mine = labels.setdefault((after, m), set())
+            if not any(no_worse(old, new) for old in mine):
+                mine -= {old for old in mine if no_worse(new, old)}
+                mine.add(new)
+                queue.append((after, m, new))
+    ends = set().union(*(mine for (cell, _), mine in labels.items() if cell == goal))
+    return {
+        "length": [straight + math.sqrt(2) * diagonal for straight, diagonal, *_ in ends],
+        "wet": [float(cost) for _, _, cost, _ in ends],
+        "turn": [45.0 * turn for *_, turn in ends],
+    }
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("representation", ["cells", "integer"])
+def test_the_front_equals_that_of_label_correction_on_larger_grids(seed, representation):
+    random_state = np.random.default_rng(seed)
+    occupied = random_state.random((8, 9)) < 0.2
+    occupied[:2, :2] = occupied[-2:, -2:] = False
+    # One way is always free.
+    occupied[0] = occupied[:, -1] = False
+    grid = OccupancyGrid(occupied, corner_cutting=seed % 2 == 0)
+    case = (grid, (0, 0), (8, 7), representation)
+    wet = Cost("wet", random_state.integers(0, 7, size=grid.shape))
+    headings = headings_of(make_problem(case, ("length",)))
+    measures = label_correction(grid, (0, 0), (8, 7), headings, wet.values)
+    for objectives in (("length", wet), (wet, "length"), ("length", "turn"), (wet, "turn"), ("turn", wet, "length")):
+        problem = make_problem(case, objectives)
+        expected = front_of(measures, problem.objective_names)
+        np.testing.assert_allclose(exact_front(problem).F, expected, rtol=1e-12, atol=1e-12)
