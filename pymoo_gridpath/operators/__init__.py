@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
+from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.crossover import (
     DiscreteSBX,
     MixedCrossover,
@@ -12,10 +15,16 @@ from pymoo_gridpath.operators.crossover import (
 from pymoo_gridpath.operators.duplicates import RowDuplicates
 from pymoo_gridpath.operators.mating import ArrayMating
 from pymoo_gridpath.operators.mutation import BitwiseMutation, DiscretePolynomialMutation, MixedMutation
+from pymoo_gridpath.operators.path_repair import PathRepair
+from pymoo_gridpath.operators.path_sampling import ReachableSampling, ScalarizedSampling
 from pymoo_gridpath.operators.repair import EdgeFixing
+from pymoo_gridpath.operators.reroute import PathMutation
 from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.operators.selection import SmoothnessTournament
+from pymoo_gridpath.operators.splice import SpliceCrossover
 from pymoo_gridpath.operators.survival import RankAndSmoothness
+from pymoo_gridpath.operators.terrain import terrain_of
+from pymoo_gridpath.representations import MonotoneRepresentation
 
 __all__ = [
     "ArrayMating",
@@ -25,14 +34,21 @@ __all__ = [
     "EdgeFixing",
     "MixedCrossover",
     "MixedMutation",
+    "PathMutation",
+    "PathRepair",
     "PointCrossover",
     "RandomSampling",
     "RankAndSmoothness",
+    "ReachableSampling",
     "RowDuplicates",
+    "ScalarizedSampling",
     "SinglePointCrossover",
     "SmoothnessTournament",
+    "SpliceCrossover",
     "TwoPointCrossover",
+    "default_operators",
     "paper_operators",
+    "path_operators",
 ]
 
 
@@ -56,11 +72,21 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
         crossover 0.9, mutation 1 / n for each gene or bit, n the number of columns; that is about one gene a path in
         the integer coding, and about 2 + ceil(log2 n) bits in the binary one.
 
+    Raises
+    ------
+    GridPathError
+        If the representation is not one of the paper's.
+
     References
     ----------
     Ahmed and Deb (2013), sections 2.1 to 2.3 and 5.2.
     """
     representation = problem.representation
+    if not isinstance(representation, MonotoneRepresentation):
+        raise GridPathError(
+            f"the paper names no operators for the {representation.name} representation, expected one of its own codings; "
+            f"path_operators fit every representation"
+        )
     rate = 1.0 / representation.frame.n_columns
     if representation.name == "binary":
         crossover, mutation = TwoPointCrossover(prob=0.9), BitwiseMutation(prob_var=rate)
@@ -75,3 +101,43 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
         "repair": EdgeFixing(),
         "eliminate_duplicates": RowDuplicates(),
     }
+
+
+def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalarized") -> dict:
+    """Return operators that know paths: whatever they make is a legal path, in any representation.
+
+    They fit any pymoo algorithm that takes operators: ``NSGA2(pop_size=100, **path_operators(problem))``.
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+    sampling : {"scalarized", "random"}, default "scalarized"
+        Whether the first population has the cheapest paths for weights of the objectives, `ScalarizedSampling`, or random
+        paths, `ReachableSampling`.
+
+    Returns
+    -------
+    dict
+        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``.
+
+    Raises
+    ------
+    GridPathError
+        If the sampling is unknown, or the problem has no path representation.
+    """
+    if sampling not in ("scalarized", "random"):
+        raise GridPathError(f"sampling is {sampling!r}, expected 'scalarized' or 'random'")
+    terrain_of(problem)
+    return {
+        "sampling": ScalarizedSampling() if sampling == "scalarized" else ReachableSampling(),
+        "crossover": SpliceCrossover(),
+        "mutation": PathMutation(),
+        "repair": PathRepair(),
+        "eliminate_duplicates": RowDuplicates(),
+    }
+
+
+def default_operators(problem) -> dict:
+    """Return `paper_operators` for the paper's representations, and `path_operators` for any other, such as "cells"."""
+    of_the_paper = isinstance(problem.representation, MonotoneRepresentation)
+    return paper_operators(problem) if of_the_paper else path_operators(problem)

@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 from pymoo.core.mating import Mating
-from pymoo.core.population import Population
 
 from pymoo_gridpath.operators.duplicates import row_keys
-from pymoo_gridpath.operators.individuals import genes
+from pymoo_gridpath.operators.individuals import ArrayPopulation
 from pymoo_gridpath.operators.parameters import number
 
 # Rounds of mating that one selection serves. Reading the attributes of a population costs more than its tournaments do.
@@ -38,7 +37,7 @@ class ArrayMating(Mating):
 
     def do(self, problem, pop, n_offsprings, random_state=None, n_max_iterations=None, **kwargs):
         assert random_state is not None
-        X = genes(pop)
+        X = pop.get("X")
         seen = set(row_keys(X))
         offspring: list[np.ndarray] = []
         missing = n_offsprings
@@ -64,18 +63,20 @@ class ArrayMating(Mating):
             missing -= len(offspring[-1])
             if missing == 0:
                 break
-        return Population.new("X", np.concatenate(offspring))
+        return ArrayPopulation.of(np.concatenate(offspring))
 
     def _cross(self, problem, X, random_state, kwargs):
         """Return the children of pairs of parents, shape (2, n_matings, n_var), as rows."""
         n = self.crossover.n_offsprings
         crossed = random_state.random(X.shape[1]) < number(self.crossover.prob)
         children = self.crossover._do(problem, X, random_state=random_state, **kwargs)
-        return np.where(crossed[None, :, None], children, X[:n]).reshape(-1, X.shape[-1])
+        children[:, ~crossed] = X[:n, ~crossed]
+        return children.reshape(-1, X.shape[-1])
 
     def _mutate(self, problem, X, random_state, kwargs):
         mutated = random_state.random(len(X)) <= number(self.mutation.prob)
-        return np.where(mutated[:, None], self.mutation._do(problem, X, random_state=random_state, **kwargs), X)
+        children = self.mutation._do(problem, X, random_state=random_state, **kwargs)
+        return children if mutated.all() else np.where(mutated[:, None], children, X)
 
 
 def _unseen(X: np.ndarray, seen: set[bytes]) -> np.ndarray:

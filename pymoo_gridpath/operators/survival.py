@@ -1,15 +1,25 @@
-"""Survivals that break ties by smoothness."""
+"""Survivals on arrays, with and without a tie-break by smoothness."""
 
 from __future__ import annotations
 
 import numpy as np
 from pymoo.core.survival import Survival
+from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+from pymoo.util.randomized_argsort import randomized_argsort
 
-from pymoo_gridpath.operators.individuals import attributes, objectives, set_attributes
+from pymoo_gridpath.operators.individuals import ArrayPopulation
 
 
-class RankAndSmoothness(Survival):
+class ArraySurvival(Survival):
+    """A survival whose populations are read and written as arrays; derive from it, first."""
+
+    def do(self, problem, pop, *args, **kwargs):
+        survivors = super().do(problem, pop.view(ArrayPopulation), *args, **kwargs)
+        return survivors if isinstance(survivors, list) else survivors.view(ArrayPopulation)
+
+
+class RankAndSmoothness(ArraySurvival):
     """The modified NSGA-II's survival: whole fronts first, and of the last one the smoothest paths.
 
     Within the front that does not fit as a whole, individuals with a smaller total turn survive; of equal turns those
@@ -26,7 +36,7 @@ class RankAndSmoothness(Survival):
         self.nds = NonDominatedSorting()
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
-        F, turn = objectives(pop), attributes(pop, "turn").astype(float)
+        F, turn = pop.get("F").astype(float), pop.get("turn").astype(float)
         n_survive = len(pop) if n_survive is None else n_survive
         rank = np.full(len(pop), len(pop))
         for k, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_survive)):
@@ -35,8 +45,31 @@ class RankAndSmoothness(Survival):
         # Whole fronts come first, so only in the last one that is needed do the further keys decide who survives.
         survivors = np.lexsort((-crowding, turn, rank))[:n_survive]
         pop = pop[survivors]
-        set_attributes(pop, rank=rank[survivors], crowding=crowding[survivors])
+        pop.set(rank=rank[survivors], crowding=crowding[survivors])
         return pop
+
+
+class ArrayRankAndCrowding(ArraySurvival, RankAndCrowding):
+    """The original NSGA-II's survival, pymoo's with the same survivors, draws and order.
+
+    See `pymoo.operators.survival.rank_and_crowding.RankAndCrowding` for the parameters.
+    """
+
+    def _do(self, problem, pop, *args, random_state=None, n_survive=None, **kwargs):
+        F, missing = pop.get("F").astype(float), len(pop) if n_survive is None else n_survive
+        fronts = self.nds.do(F, n_stop_if_ranked=missing)
+        survivors, crowding = [], []
+        for front in fronts:
+            n_remove = max(len(front) - missing, 0)
+            crowding.append(self.crowding_func.do(F[front], n_remove=n_remove))
+            if n_remove:
+                order = randomized_argsort(crowding[-1], order="descending", method="numpy", random_state=random_state)
+                front = front[order[:-n_remove]]
+            survivors.append(front)
+            missing -= len(front)
+        rank = np.repeat(np.arange(len(fronts)), [len(front) for front in fronts])
+        pop[np.concatenate(fronts)].set(rank=rank, crowding=np.concatenate(crowding))
+        return pop[np.concatenate(survivors)]
 
 
 def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:

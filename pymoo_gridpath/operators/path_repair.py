@@ -1,0 +1,27 @@
+"""Repair: rows of genes made legal paths."""
+
+from __future__ import annotations
+
+from pymoo.core.repair import Repair
+
+from pymoo_gridpath.operators.terrain import max_cells, terrain_of
+from pymoo_gridpath.search.sequences import are_legal, mend
+
+
+class PathRepair(Repair):
+    """Make legal paths of rows that are none, and leave the others as they are.
+
+    First come the representation's own rules, such as the paper's edge fixing. Of what is still no legal path, occupied
+    cells are dropped, the broken stretches joined by shortest routes, and loops cut. Children of `SpliceCrossover` and
+    `PathMutation` need no repair; those of operators that know nothing of paths do.
+    """
+
+    def _do(self, problem, X, random_state=None, **kwargs):
+        representation, terrain = problem.representation, terrain_of(problem)
+        X = representation.repair(X, random_state)
+        paths = representation.to_sequences(X)
+        broken = ~are_legal(paths, terrain)
+        if broken.any():
+            mended = mend(paths, representation.moves, terrain.start, terrain.goal, max_cells(problem))
+            X[broken] = representation.from_sequences(mended)[broken]
+        return X
