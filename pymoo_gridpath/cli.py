@@ -22,6 +22,9 @@ from pymoo_gridpath.representations import REPRESENTATIONS
 
 DEFAULT_MAP = "warehouse"
 
+# Rows of the printed table; the files hold all paths.
+MAX_ROWS = 40
+
 EXIT_OK, EXIT_NO_PATH, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
 
 
@@ -83,9 +86,16 @@ def _parser() -> argparse.ArgumentParser:
     plan.add_argument("--radius", type=float, default=0.0, metavar="M", help="robot radius in metres (default: a point)")
     _add_map_options(plan)
     search = plan.add_argument_group("search")
-    search.add_argument("--algorithm", metavar="NAME", help="nsga2, spea2, moead, ... (default: nsga2; ga for one objective)")
     search.add_argument(
-        "--representation", choices=REPRESENTATIONS, default="integer", help="how a path is coded (default: integer)"
+        "--algorithm",
+        metavar="NAME",
+        help="nsga2, spea2, moead, ...; exact for the whole front (default: nsga2; ga for one objective)",
+    )
+    search.add_argument(
+        "--representation",
+        choices=REPRESENTATIONS,
+        help="how a path is coded (default: cells, which can turn back; integer where corners may be cut, which is the world "
+        "of the paper, or where an --axis is given)",
     )
     search.add_argument(
         "--objectives",
@@ -100,12 +110,18 @@ def _parser() -> argparse.ArgumentParser:
     search.add_argument("--penalty", type=float, metavar="P", help="what crossing an occupied cell adds to each objective")
     search.add_argument("--potential-limit", type=float, metavar="P0", help="largest vulnerability, with --obstacles limit")
     search.add_argument(
-        "--axis", choices=("auto", "x", "y"), default="auto", help="axis along which paths advance (default: auto)"
+        "--axis",
+        choices=("auto", "x", "y"),
+        default="auto",
+        help="axis along which paths advance that never turn back (default: auto)",
     )
     search.add_argument("--pop-size", type=_positive, default=200, metavar="N", help="population size (default: 200)")
     search.add_argument("--generations", type=_positive, default=200, metavar="N", help="generations of a run (default: 200)")
     search.add_argument(
         "--runs", type=_positive, default=1, metavar="N", help="runs that are merged into one front (default: 1)"
+    )
+    search.add_argument(
+        "--max-seconds", type=float, metavar="S", help="time for --algorithm exact; what it has found by then is kept"
     )
     search.add_argument("--seed", type=_natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
     plan.add_argument(
@@ -171,7 +187,7 @@ def _natural(text: str) -> int:
 def _plan(arguments) -> int:
     """Plan paths from a start to a goal, print the trade-off table, and write figures and files."""
     # Imported late, since `maps`, `info` and --help do without.
-    from pymoo_gridpath.algorithms import make_algorithm, minimize_runs
+    from pymoo_gridpath.algorithms import ExactFront, make_algorithm
     from pymoo_gridpath.convergence import ConvergenceRecorder
     from pymoo_gridpath.plotting import save_figures
     from pymoo_gridpath.problems import GridPathProblem
@@ -185,7 +201,7 @@ def _plan(arguments) -> int:
         grid,
         start,
         goal,
-        representation=arguments.representation,
+        representation=arguments.representation or _default_representation(grid, arguments.axis),
         objectives=arguments.objectives,
         obstacles=arguments.obstacles or "penalty",
         penalty=arguments.penalty,
@@ -194,34 +210,35 @@ def _plan(arguments) -> int:
     )
     name = arguments.algorithm or ("nsga2" if problem.n_obj > 1 else "ga")
     algorithm = make_algorithm(name, problem, pop_size=arguments.pop_size)
+    if isinstance(algorithm, ExactFront) and arguments.runs > 1:
+        raise GridPathError(
+            f"--runs is {arguments.runs}, expected 1 with --algorithm exact, which finds the same front each time"
+        )
+    if arguments.max_seconds is not None and not isinstance(algorithm, ExactFront):
+        raise GridPathError(f"--max-seconds is for --algorithm exact, not for {name}; expected --generations instead")
     _make_directory(arguments.output)
 
     print(f"{grid.name}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
-    progress = Progress(arguments.runs, arguments.generations)
     with _StopOnCtrlC() as stop:
-
-        def observe(run, algorithm):
-            progress.update(run, algorithm)
-            return stop.requested
-
-        termination = ("n_gen", arguments.generations)
-        with progress:
-            results = minimize_runs(
-                problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe
-            )
+        results = _search(problem, algorithm, arguments, stop)
         stop.searching = False
+        if not any(len(result.pop) for result in results):
+            print(f"pymoo-gridpath: no path was found; the search {results[0].message}", file=sys.stderr)
+            return EXIT_NO_PATH
         trade_off, files = _write_paths(results, arguments, name, stop.requested)
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
-    print(trade_off.table())
+    elif results[0].success is False:
+        print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
+    print(trade_off.table(max_rows=MAX_ROWS))
     x, y = goal
     print(f"for comparison, the shortest of all paths on this grid has length {grid.shortest_lengths(start)[y, x]:.3f}")
     if len(results) > 1:
         print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(str(file) for file in files), flush=True)
-    history = [result.algorithm.callback for result in results if result.algorithm is not None]
-    figures = save_figures(trade_off, arguments.output, history=history, units=arguments.units)
+    history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
+    figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
     print("figures: " + ", ".join(str(file) for file in figures))
     if stop.requested:
         return EXIT_INTERRUPTED
@@ -292,6 +309,11 @@ def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None
     return grid.check_query(start, goal)
 
 
+def _default_representation(grid: OccupancyGrid, axis: str) -> str:
+    """Return the coding for any path, or the paper's in the paper's world and where paths advance along an axis."""
+    return "integer" if grid.corner_cutting or axis != "auto" else "cells"
+
+
 def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:
     inflated = grid.inflate(radius)
     try:
@@ -299,6 +321,27 @@ def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:
     except GridError as error:
         raise type(error)(f"with obstacles grown by the robot's radius of {radius:g} m, {error}") from None
     return inflated
+
+
+def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
+    """Return the Results of the runs, with progress shown, ended early if Ctrl-C asks for it."""
+    from pymoo_gridpath.algorithms import ExactFront, minimize_runs
+    from pymoo_gridpath.convergence import ConvergenceRecorder
+
+    def observe(run, algorithm):
+        progress.update(run, algorithm)
+        return stop.requested
+
+    def watch(meter):
+        progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
+        return stop.requested
+
+    with Progress(arguments.runs, arguments.generations) as progress:
+        if isinstance(algorithm, ExactFront):
+            algorithm = ExactFront(seconds=arguments.max_seconds, watch=watch)
+            return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)
+        termination = ("n_gen", arguments.generations)
+        return minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)
 
 
 def _found_legal(result) -> bool:

@@ -39,10 +39,9 @@ class Progress:
 
     def update(self, run: int, algorithm) -> None:
         """Show the state of run ``run`` (from 0) after a generation of its algorithm."""
-        now = time.monotonic()
-        if not self.shown or now - self._last < self.interval:
+        if not self._due():
             return
-        self._last = now
+        now = time.monotonic()
         # A loop-wise algorithm reports more than once a generation; its termination knows how far it is.
         share = min(max(algorithm.termination.perc, 1e-9), 1.0)
         done = (run + share) / self.n_runs
@@ -51,5 +50,20 @@ class Progress:
         runs = f"run {run + 1}/{self.n_runs}, " if self.n_runs > 1 else ""
         generation = min(round(share * self.n_gen), self.n_gen)
         text = f"{runs}generation {generation}/{self.n_gen}, {legal} legal paths, about {left:.0f} s left"
+        self._write(text)
+
+    def note(self, text: str) -> None:
+        """Show how a search stands that has no generations."""
+        if self._due():
+            self._write(text)
+
+    def _due(self) -> bool:
+        now = time.monotonic()
+        if not self.shown or now - self._last < self.interval:
+            return False
+        self._last = now
+        return True
+
+    def _write(self, text: str) -> None:
         self.stream.write(f"\r\x1b[K{text}")
         self.stream.flush()

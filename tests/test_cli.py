@@ -94,6 +94,28 @@ def test_figures_of_an_earlier_set_do_not_stay(tmp_path, free_map):
     assert {file.stem for file in (tmp_path / "out").iterdir()} == {"paths", "map", "convergence"}
 
 
+def test_plan_finds_paths_that_turn_back(tmp_path):
+    path = tmp_path / "spiral.txt"
+    path.write_text("start: 0 0\ngoal: 2 2\n\n.....\n.###.\n...#.\n####.\n.....\n")
+    done = run("plan", path, *FAST, "-o", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    document = json.loads((tmp_path / "out" / "paths.json").read_text())
+    assert document["settings"]["representation"] == "cells"
+    assert [len(found["cells"]) for found in document["paths"]] == [17]
+    done = run("plan", path, "--representation", "integer", *FAST, "-o", tmp_path / "out")
+    assert done.returncode == 2 and "representation='cells'" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "representation"),
+    [([], "cells"), (["--corner-cutting"], "integer"), (["--axis", "x"], "integer"), (["--representation", "mixed"], "mixed")],
+)
+def test_paths_may_turn_back_but_in_the_papers_world(tmp_path, free_map, options, representation):
+    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "-o", tmp_path / "out", *options]
+    assert main([*map(str, arguments)]) == 0
+    assert json.loads((tmp_path / "out" / "paths.json").read_text())["settings"]["representation"] == representation
+
+
 @pytest.mark.parametrize("algorithm", ["spea2", "moea/d", "NSGA-III"])
 def test_plan_takes_other_algorithms_and_settings(tmp_path, free_map, algorithm):
     done = run(
@@ -133,6 +155,7 @@ def test_plan_with_one_objective(tmp_path, free_map):
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "nsga9"], "did you mean"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "MOPSO_CD"], "MOPSO_CD"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "invalid choice: 'real'"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "cells", "--axis", "y"], "advance along none"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--objectives", "lenght"], "did you mean 'length'"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "robot's radius of 5 m"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "-1"], "robot radius is -1"),
@@ -170,7 +193,7 @@ def test_no_legal_path_is_said_and_exits_with_1(tmp_path):
     grid = tmp_path / "walls.txt"
     grid.write_text("\n".join(rows))
     arguments = ["plan", grid, "--start", "0,5", "--goal", "19,5", "--pop-size", "2", "--generations", "1"]
-    done = run(*arguments, "-o", tmp_path / "out")
+    done = run(*arguments, "--representation", "integer", "-o", tmp_path / "out")
     assert done.returncode == 1, done.stdout + done.stderr
     assert "no legal path was found" in done.stderr
     assert (tmp_path / "out" / "paths.json").exists()

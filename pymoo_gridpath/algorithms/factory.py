@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
 import importlib
 import importlib.util
@@ -22,10 +23,14 @@ from pymoo.util.reference_direction import (
 from pymoo_gridpath.algorithms import _arguments
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.differential import WholeNumberDE
+from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
+from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
-from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
+from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, paper_operators
+from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, default_operators
+from pymoo_gridpath.operators.selection import CrowdingTournament
+from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 
 _OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
 _PACKAGES = {"scikit-learn": "sklearn"}
@@ -44,7 +49,8 @@ def make_algorithm(
     Parameters
     ----------
     name : str
-        An algorithm of the capability table; case and punctuation do not matter: "NSGA-II", "nsga2", "MOEA/D".
+        An algorithm of the capability table; case and punctuation do not matter: "NSGA-II", "nsga2", "MOEA/D". Or "exact",
+        for `ExactFront`, to which only ``kwargs`` matter.
     problem : GridPathProblem
         What it is to solve.
     pop_size : int, default 100
@@ -54,8 +60,9 @@ def make_algorithm(
         Whether ties are broken by total turn. By default they are where the algorithm can, unless turn is an objective of
         the problem or ``selection`` or ``survival`` is given.
     operators : mapping, optional
-        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates`` to use in place of the paper's, see
-        `paper_operators`; each may be left out.
+        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``, such as `path_operators` returns;
+        each may be left out. By default those of `default_operators`: the paper's for its codings, and path-aware ones for
+        cell sequences. A repair or duplicate elimination that the algorithm does not take is left out.
     **kwargs
         Other arguments of the algorithm: what its pymoo class takes and heeds, such as ``ref_dirs``, ``n_neighbors``,
         ``termination`` or ``seed``.
@@ -84,6 +91,8 @@ def make_algorithm(
     ...
     pymoo_gridpath.errors.CapabilityError: DNSGA2 cannot solve problems with constraints; use obstacles='penalty'
     """
+    if _key(name) in ("exact", "exactfront"):
+        return ExactFront(**kwargs)
     row = find_capability(name)
     refuse_problem(row, problem)
     return build(row, problem, pop_size, smoothness, operators, **kwargs)
@@ -147,7 +156,7 @@ def build(
     given = dict(kwargs)
     if operators is not None:
         _arguments.check("operators", operators, dict.fromkeys(_OPERATORS))
-        given.update(operators)
+        given.update(_fitted(row, operators, accepted))
     _arguments.check(row.name, given, accepted)
     settings = _arguments.fresh_defaults(accepted)
     settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
@@ -155,9 +164,10 @@ def build(
     settings |= given | _references(row, problem, pop_size, given)
     if "pop_size" in accepted:
         settings["pop_size"] = pop_size
-    if row.name in ("NSGA2", "SPEA2") and not given.keys() & set(_OPERATORS):
-        # The same mating twice as fast; operators that a caller gives may need pymoo's.
+    if row.name in ("NSGA2", "SPEA2") and all(_is_ours(given[key]) for key in _OPERATORS if key in given):
+        # The same mating several times as fast; operators from elsewhere may need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
+    settings.setdefault("evaluator", ArrayEvaluator())
     termination = settings.pop("termination", None)
     algorithm = cls(**settings)
     if termination is not None:
@@ -230,12 +240,27 @@ def _class_of(row: Capability) -> type:
     return getattr(importlib.import_module(row.module), row.name)
 
 
+def _fitted(row: Capability, operators: Mapping[str, Any], accepted) -> dict[str, Any]:
+    """Return operators without those that an algorithm does not take, and with one child a mating if it needs that."""
+    fitted = {key: value for key, value in operators.items() if key in accepted or key in ("sampling", "crossover", "mutation")}
+    if row.one_child and _is_ours(fitted.get("crossover")):
+        crossover: Any = copy.copy(fitted["crossover"])
+        crossover.n_offsprings = 1
+        fitted["crossover"] = crossover
+    return fitted
+
+
+def _is_ours(operator: Any) -> bool:
+    """Whether an operator is one of this package's."""
+    return type(operator).__module__.startswith("pymoo_gridpath.")
+
+
 def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, Any]:
     if row.one_child and getattr(given.get("crossover"), "n_offsprings", 1) != 1:
         raise CapabilityError(f"{row.name} needs a crossover that gives one child: n_offsprings=1")
     if given.keys() >= set(_OPERATORS):
         return {}
-    made = paper_operators(problem)
+    made = default_operators(problem)
     if row.one_child:
         made["crossover"].n_offsprings = 1
     if not row.repair:
@@ -254,11 +279,17 @@ def _smoothness(row: Capability, problem, smoothness: bool | None, given: Mappin
         smoothness = row.smoothness and not own and "turn" not in getattr(problem, "objective_names", ())
     if row.name == "MOEAD":
         return {"smoothness": smoothness}
-    if not smoothness:
+    if not row.smoothness:
         return {}
     if row.name == "SPEA2":
-        return {"selection": StrengthTournament(), "survival": StrengthAndSmoothness()}
-    return {"selection": SmoothnessTournament(), "survival": RankAndSmoothness()}
+        selection, survival = (
+            (StrengthTournament, StrengthAndSmoothness) if smoothness else (FitnessTournament, ArraySPEA2Survival)
+        )
+    else:
+        selection, survival = (
+            (SmoothnessTournament, RankAndSmoothness) if smoothness else (CrowdingTournament, ArrayRankAndCrowding)
+        )
+    return {"selection": selection(), "survival": survival()}
 
 
 def _references(row: Capability, problem, pop_size: int, given: Mapping[str, Any]) -> dict[str, Any]:

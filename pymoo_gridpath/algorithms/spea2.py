@@ -1,19 +1,25 @@
-"""SPEA2's survival and tournament with a smoothness tie-break."""
+"""SPEA2's survivals and tournaments, with and without a tie-break by smoothness."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
-from pymoo.core.survival import Survival
+from pymoo.algorithms.moo.nsga3 import HyperplaneNormalization
+from pymoo.algorithms.moo.spea2 import SPEA2Survival
 from pymoo.operators.selection.tournament import TournamentSelection
+from pymoo.util.misc import vectorized_cdist
 from scipy.spatial.distance import cdist
 
-from pymoo_gridpath.operators.selection import tournament
+from pymoo_gridpath.operators.selection import compare, decide, draw_as_pymoo, winners
+from pymoo_gridpath.operators.survival import ArraySurvival
 
 #: Distances in scaled objectives that differ by no more than this are equal.
 SAME_DISTANCE = 1e-9
 
 
-class StrengthAndSmoothness(Survival):
+class StrengthAndSmoothness(ArraySurvival):
     """SPEA2's environmental selection, in which the smoother of two crowding paths survives.
 
     The raw fitness R of an individual is the sum of the strengths of those that dominate it, a strength being how many an
@@ -43,17 +49,64 @@ class StrengthAndSmoothness(Survival):
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
         F, turn = pop.get("F").astype(float), pop.get("turn").astype(float)
-        no_worse = (F[:, None] <= F[None]).all(axis=2)
-        dominates = no_worse & ~no_worse.T
-        raw = dominates.T @ dominates.sum(axis=1)
-        front = np.flatnonzero(~dominates.any(axis=0))
+        raw, front = _strength(F)
         scaled = _scale(F, F[front])
         density = 1.0 / (_kth_distance(scaled) + 2.0)
         pop.set("SPEA_F", raw + density, "SPEA_R", raw, "SPEA_D", density)
         n_survive = len(pop) if n_survive is None else n_survive
         if len(front) <= n_survive:
             return pop[np.lexsort((density, turn, raw))[:n_survive]]
-        return pop[front[truncate(scaled[front], turn[front], n_survive)]]
+        kept = _ends(scaled[front], turn[front])[:n_survive]
+        return pop[front[truncate(_distances(scaled[front]), n_survive, turn[front], kept, SAME_DISTANCE)]]
+
+
+class ArraySPEA2Survival(ArraySurvival, SPEA2Survival):
+    """The original SPEA2's environmental selection, pymoo's with the same survivors in the same order, and a fast truncation.
+
+    Parameters
+    ----------
+    normalize : bool, default True
+        Whether distances are those in objectives scaled as NSGA-III scales them.
+
+    References
+    ----------
+    E. Zitzler, M. Laumanns and L. Thiele, "SPEA2: improving the strength Pareto evolutionary algorithm", TIK report 103, ETH
+    Zurich, 2001, sections 3.1 and 3.2.
+    """
+
+    norm: Any
+
+    def __init__(self, normalize: bool = True):
+        super().__init__(normalize=normalize)
+
+    def _do(self, problem, pop, *args, n_survive=None, **kwargs):
+        F = pop.get("F").astype(float)
+        n_survive = len(pop) if n_survive is None else n_survive
+        raw, front = _strength(F)
+        scaled = self._scaled(F)
+        distances = vectorized_cdist(scaled, scaled, fill_diag_with_inf=True)
+        k = min(int(np.sqrt(len(pop))), len(pop) - 1)
+        density = 1.0 / (np.partition(distances, k, axis=1)[:, k] + 2.0)
+        fitness = raw + density
+        pop.set("SPEA_F", fitness, "SPEA_R", raw, "SPEA_D", density)
+        if self.normalize:
+            # The extreme points of the front win every tournament.
+            ends = vectorized_cdist(self.norm.extreme_points, F[front]).argmin(axis=1)
+            pop[front[ends]].set("SPEA_F", -1.0)
+        if len(front) > n_survive:
+            return pop[front[truncate(distances[np.ix_(front, front)], n_survive)]]
+        rest = np.setdiff1d(np.arange(len(pop)), front)
+        return pop[np.concatenate([front, rest[fitness[rest].argsort()][: n_survive - len(front)]])]
+
+    def _scaled(self, F: np.ndarray) -> np.ndarray:
+        if not self.normalize:
+            return F
+        if self.norm is None:
+            self.norm = HyperplaneNormalization(F.shape[1])
+        self.norm.update(F)
+        # As in pymoo, distances are no numbers while the range is empty, and the order of the individuals decides.
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return (F - self.norm.ideal_point) / (self.norm.nadir_point - self.norm.ideal_point)
 
 
 class StrengthTournament(TournamentSelection):
@@ -67,6 +120,13 @@ class StrengthTournament(TournamentSelection):
 
     def __init__(self, **kwargs):
         super().__init__(func_comp=by_strength_turn_density, **kwargs)
+
+
+class FitnessTournament(TournamentSelection):
+    """The original SPEA2's binary tournament, pymoo's with the same draws: violation, then fitness; the smaller wins."""
+
+    def __init__(self, **kwargs):
+        super().__init__(func_comp=by_fitness, **kwargs)
 
 
 def by_strength_turn_density(pop, P: np.ndarray, random_state=None, **kwargs) -> np.ndarray:
@@ -83,51 +143,83 @@ def by_strength_turn_density(pop, P: np.ndarray, random_state=None, **kwargs) ->
     -------
     numpy.ndarray of int, shape (n_tournaments, 1)
     """
-    cv, turn = pop.get("CV")[:, 0], pop.get("turn").astype(float)
-    feasible = cv <= 0.0
-    # The infeasible carry no fitness of this generation; among them only the violation counts.
-    raw, density = np.zeros(len(pop)), np.zeros(len(pop))
-    raw[feasible], density[feasible] = pop[feasible].get("SPEA_R"), pop[feasible].get("SPEA_D")
-    both = feasible[P].all(axis=1)
-    return tournament(P, random_state, (cv, None), (raw, both), (turn, both), (density, both))
+    assert random_state is not None
+    CV, raw, turn, density = pop.get("CV", "SPEA_R", "turn", "SPEA_D")
+    verdict = decide(P, CV[:, 0], compare(P, raw), compare(P, turn), compare(P, density))
+    return winners(P, verdict, random_state.random(len(P)) < 0.5)
 
 
-def truncate(F: np.ndarray, turn: np.ndarray, n_survive: int) -> np.ndarray:
-    """Return which of mutually non-dominated individuals survive SPEA2's truncation; see `StrengthAndSmoothness`.
+def by_fitness(pop, P: np.ndarray, random_state=None, **kwargs) -> np.ndarray:
+    """Return the winners of tournaments; see `FitnessTournament`, and `by_strength_turn_density` for the arguments."""
+    CV, fitness = pop.get("CV", "SPEA_F")
+    verdict = decide(P, CV[:, 0], compare(P, fitness))
+    return winners(P, verdict, draw_as_pymoo(verdict, random_state))
+
+
+def truncate(
+    distances: np.ndarray, n_survive: int, turn: np.ndarray | None = None, kept: Sequence[int] = (), tolerance: float = 0.0
+) -> np.ndarray:
+    """Return which of mutually non-dominated individuals survive SPEA2's truncation.
+
+    As long as there are too many, one goes whose nearest neighbour is the nearest; of several the one with the largest turn, of
+    equal turns the one whose sorted distances to the others are lexicographically the smallest, and else the first.
 
     Parameters
     ----------
-    F : numpy.ndarray, shape (N, n_obj)
-        Scaled objectives.
-    turn : numpy.ndarray, shape (N,)
-        Total turns.
+    distances : numpy.ndarray, shape (N, N)
+        Between all, infinite on the diagonal.
     n_survive : int
-        How many, at least n_obj.
+        How many, at least as many as are kept.
+    turn : numpy.ndarray, shape (N,), optional
+        Total turns; without them distances alone decide, as in SPEA2.
+    kept : sequence of int
+        Who may not go.
+    tolerance : float, default 0
+        Nearest distances that differ by no more are equal.
 
     Returns
     -------
     numpy.ndarray of int, shape (n_survive,)
         Ascending indices.
     """
-    distances = _distances(F)
     # Each row lists everybody by distance; `place` points at the nearest that is still alive and moves on only when it dies,
     # so that a removal costs O(N) rather than a sort of all distances.
+    n = len(distances)
     order = np.argsort(distances, axis=1, kind="stable")
-    place = np.zeros(len(F), dtype=np.int64)
-    nearest = np.take_along_axis(distances, order[:, :1], axis=1)[:, 0]
-    alive = np.ones(len(F), dtype=bool)
-    removable = np.ones(len(F), dtype=bool)
-    removable[_ends(F, turn)[:n_survive]] = False
-    for _ in range(len(F) - n_survive):
+    ranked = np.take_along_axis(distances, order, axis=1)
+    place, nearest = np.zeros(n, dtype=np.int64), ranked[:, 0].copy()
+    alive, removable = np.ones(n, dtype=bool), np.ones(n, dtype=bool)
+    removable[list(kept)] = False
+    for _ in range(n - n_survive):
         candidates = np.flatnonzero(alive & removable)
-        candidates = candidates[nearest[candidates] <= nearest[candidates].min() + SAME_DISTANCE]
-        candidates = candidates[turn[candidates] == turn[candidates].max()]
-        loser = candidates[0] if len(candidates) == 1 else _most_crowded(distances, candidates, alive)
+        candidates = candidates[nearest[candidates] <= nearest[candidates].min() + tolerance]
+        if turn is not None:
+            candidates = candidates[turn[candidates] == turn[candidates].max()]
+        loser = candidates[0]
+        if len(candidates) > 1:
+            near = ranked[candidates][alive[order[candidates]]].reshape(len(candidates), -1)
+            loser = candidates[_lexicographic_minimum(near)]
         alive[loser] = False
-        for i in np.flatnonzero(alive & (order[np.arange(len(F)), place] == loser)):
+        for i in np.flatnonzero(alive & (order[np.arange(n), place] == loser)):
             place[i] += np.argmax(alive[order[i, place[i] :]])
-            nearest[i] = distances[i, order[i, place[i]]]
+            nearest[i] = ranked[i, place[i]]
     return np.flatnonzero(alive)
+
+
+def _lexicographic_minimum(rows: np.ndarray) -> int:
+    """Return the index of the first of the lexicographically smallest rows of numbers that are not negative."""
+    # The order of such numbers is that of their bytes with the largest place first.
+    keys = rows.astype(">f8")
+    return min(range(len(keys)), key=lambda k: keys[k].tobytes())
+
+
+def _strength(F: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the raw fitness R of each individual, shape (N,), and the indices of the non-dominated ones."""
+    better = np.zeros((len(F), len(F)), dtype=bool)
+    for f in F.T:
+        better |= f[:, None] < f
+    dominates = better & ~better.T
+    return dominates.T @ dominates.sum(axis=1), np.flatnonzero(~dominates.any(axis=0))
 
 
 def _distances(F: np.ndarray) -> np.ndarray:
@@ -151,9 +243,3 @@ def _ends(F: np.ndarray, turn: np.ndarray) -> list[int]:
     """Return one individual with the best value of each objective."""
     total = F.sum(axis=1)
     return list(dict.fromkeys(int(np.lexsort((turn, total, f))[0]) for f in F.T))
-
-
-def _most_crowded(distances: np.ndarray, candidates: np.ndarray, alive: np.ndarray) -> int:
-    """Return the candidate whose sorted distances to those alive are lexicographically the smallest."""
-    near = np.sort(distances[np.ix_(candidates, np.flatnonzero(alive))], axis=1)
-    return int(candidates[np.lexsort(near.T[::-1])[0]])

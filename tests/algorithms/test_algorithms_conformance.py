@@ -124,13 +124,13 @@ def test_operators_that_the_table_names_are_called(row, make_problem, arguments)
     called = set()
 
     def spy(name, operator):
-        original = operator.do
+        original = operator._do
 
         def do(*args, **kwargs):
             called.add(name)
             return original(*args, **kwargs)
 
-        operator.do = do
+        operator._do = do
         return operator
 
     names = ["repair"] + (["crossover", "mutation"] if row.operators else [])

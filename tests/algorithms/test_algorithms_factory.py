@@ -157,10 +157,15 @@ def test_termination_and_seed_reach_the_run(make_problem):
     assert np.array_equal(result.pop.get("X"), again.pop.get("X"))
 
 
-def test_own_operators_get_pymoos_mating(make_problem):
+class FromElsewhere(DiscreteSBX):
+    """An operator that another package might bring."""
+
+
+def test_operators_from_elsewhere_get_pymoos_mating(make_problem):
     problem = make_problem()
-    crossover = DiscreteSBX(5.0)
+    crossover = FromElsewhere(5.0)
     assert isinstance(make_algorithm("NSGA2", problem).mating, ArrayMating)
+    assert isinstance(make_algorithm("NSGA2", problem, crossover=DiscreteSBX(5.0)).mating, ArrayMating)
     given = make_algorithm("NSGA2", problem, crossover=crossover)
     assert type(given.mating) is Mating and given.mating.crossover is crossover
 

@@ -10,7 +10,7 @@ from pymoo.core.population import Population
 from pymoo.optimize import minimize
 
 from pymoo_gridpath.algorithms import StrengthAndSmoothness, StrengthTournament, make_algorithm
-from pymoo_gridpath.algorithms.spea2 import truncate
+from pymoo_gridpath.algorithms.spea2 import SAME_DISTANCE, _distances, _ends, truncate
 
 
 def population(F, turn, cv=None):
@@ -46,7 +46,9 @@ def test_truncation_matches_a_loop(seed):
     n, n_obj = int(rng.integers(4, 30)), int(rng.integers(2, 4))
     F, turn = rng.integers(0, 12, (n, n_obj)), rng.integers(0, 3, n)
     n_survive = int(rng.integers(n_obj, n + 1))
-    assert truncate(F.astype(float), turn, n_survive).tolist() == loop_truncation(F.tolist(), turn.tolist(), n_survive)
+    kept = _ends(F.astype(float), turn)[:n_survive]
+    survivors = truncate(_distances(F.astype(float)), n_survive, turn, kept, SAME_DISTANCE)
+    assert survivors.tolist() == loop_truncation(F.tolist(), turn.tolist(), n_survive)
 
 
 def test_of_the_closest_pair_the_smoother_stays(make_problem):

@@ -1,0 +1,28 @@
+"""Evaluation of a generation with few look-ups an individual."""
+
+from __future__ import annotations
+
+import numpy as np
+from pymoo.core.evaluator import Evaluator
+
+from pymoo_gridpath.operators.individuals import ArrayPopulation
+
+_NO_VIOLATION = np.zeros(1)
+_NO_VIOLATION.flags.writeable = False
+
+
+class ArrayEvaluator(Evaluator):
+    """pymoo's evaluator, which also sets the constraint violation where there are no constraints.
+
+    pymoo works that out for one individual at a time, when first asked, and asks each whether it is evaluated already.
+    """
+
+    def eval(self, problem, pop, skip_already_evaluated=None, **kwargs):
+        if isinstance(pop, ArrayPopulation) and not any(pop.get("evaluated", to_numpy=False)):
+            skip_already_evaluated = False
+        return super().eval(problem, pop, skip_already_evaluated, **kwargs)
+
+    def _eval(self, problem, pop, evaluate_values_of, **kwargs):
+        super()._eval(problem, pop, evaluate_values_of, **kwargs)
+        if not problem.has_constraints():
+            pop.set("CV", [_NO_VIOLATION] * len(pop))
