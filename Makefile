@@ -35,7 +35,7 @@ docs: .setup-docs
 # Stamps: made again whenever the dependencies change.
 .setup-base: pyproject.toml .venv/pyvenv.cfg
 	@echo "installing what is needed"
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
 	@touch $@
 
 .setup-test: pyproject.toml .venv/pyvenv.cfg

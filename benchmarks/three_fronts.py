@@ -1,8 +1,9 @@
 """Draw one figure: the exact front, what the paper's method finds, and what path-aware operators find, on the same axes.
 
-The grid is one on which the difference is plain to see, of 32 x 32 cells and about 165 obstacles; of five such grids, drawn with
-seeds 1 to 5, it is the one on which the paper's method found least. That has all its 250,000 evaluations in a single run, and the
-path-aware one 10,000, from random paths. Run with ``python benchmarks/three_fronts.py docs/images/fronts.png``; it takes a minute or two.
+Grids are those of section 6 of Ahmed and Deb (2013), 32 x 32 cells with p0 = 0.16 (about 165 obstacles). The paper's method
+has its full 250,000 evaluations in a single run, and the path-aware one 10,000, from random paths. Of seeds 1 to 7 the default
+is the one on which the paper's method reaches the median share of the exact front's hypervolume: 0.83, of 0.41 to 0.96. Run
+with ``python benchmarks/three_fronts.py docs/images/fronts.png``; it takes a minute or two.
 """
 
 from __future__ import annotations
@@ -16,20 +17,13 @@ import moocore
 import numpy as np
 from pymoo.optimize import minimize
 
-from pymoo_gridpath import GridPathProblem, OccupancyGrid
+from pymoo_gridpath import GridPathProblem
 from pymoo_gridpath.algorithms import ahmed_deb_2013, make_algorithm
-from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.plotting import plot_map
+from pymoo_gridpath.problems import random_dense_grid
 
 COLOURS = {"exact": "#2b2b2b", "paper": "#d1495b", "path-aware": "#2274a5"}
-
-
-def scenario(seed: int) -> OccupancyGrid:
-    """Return a random grid of 32 x 32 cells with a sixth of them occupied, which a monotone path can cross."""
-    occupied = np.random.default_rng(seed).random((32, 32)) < 165 / 1024
-    occupied[0, 0] = occupied[-1, -1] = False
-    return OccupancyGrid(occupied, corner_cutting=True, name=f"32 x 32, {occupied.sum()} obstacles")
 
 
 def legal_front(result) -> np.ndarray:
@@ -53,14 +47,11 @@ def share(F: np.ndarray, exact: np.ndarray) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path, help="where the figure goes")
-    parser.add_argument("--seed", type=int, default=4, help="seed of the grid and of both runs")
+    parser.add_argument("--seed", type=int, default=7, help="seed of the grid and of both runs")
     parser.add_argument("--n-gen", type=int, default=500, help="generations of the paper's method, with 500 individuals")
     arguments = parser.parse_args()
-    try:
-        grid = scenario(arguments.seed)
-        problem = GridPathProblem(grid, (0, 0), (31, 31))
-    except GridPathError as error:
-        raise SystemExit(f"this seed gives a grid without a way through: {error}") from None
+    grid = random_dense_grid(32, 0.16, arguments.seed)
+    problem = GridPathProblem(grid, (0, 0), (31, 31))
     exact: Any = problem.pareto_front()
     paper_result = minimize(*ahmed_deb_2013(grid, (0, 0), (31, 31), n_gen=arguments.n_gen), seed=arguments.seed)
     aware = make_algorithm("NSGA2", problem, pop_size=100, operators=path_operators(problem, "random"))
@@ -71,7 +62,9 @@ def main() -> None:
         "path-aware": "path-aware operators, 10,000 evaluations",
     }
 
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10.5, 4.6), gridspec_kw={"width_ratios": [1, 1.25]}, layout="constrained")
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(10.5, 4.6), gridspec_kw={"width_ratios": [1, 1.25]}, layout="constrained"
+    )
     plot_map(grid, ax=left)
     paths = {"paper": problem.decode(paper_result.opt.get("X")), "path-aware": problem.decode(aware_result.opt.get("X"))}
     for name, decoded in paths.items():

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath.compiled import COMPILED
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
@@ -216,6 +217,11 @@ def _plan(arguments) -> int:
         )
     if arguments.max_seconds is not None and not isinstance(algorithm, ExactFront):
         raise GridPathError(f"--max-seconds is for --algorithm exact, not for {name}; expected --generations instead")
+    if not COMPILED and (isinstance(algorithm, ExactFront) or problem.representation.name == "cells"):
+        print(
+            "numba is not installed, so this search runs as plain Python, many times slower: pip install 'pymoo_gridpath[fast]'",
+            file=sys.stderr,
+        )
     _make_directory(arguments.output)
 
     print(f"{grid.name}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
