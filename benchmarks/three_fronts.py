@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 import moocore
 import numpy as np
 from pymoo.optimize import minimize
+from quality import ratio
 
 from pymoo_gridpath import GridPathProblem
 from pymoo_gridpath.algorithms import ahmed_deb_2013, make_algorithm
@@ -29,19 +30,9 @@ COLOURS = {"exact": "#2b2b2b", "paper": "#d1495b", "path-aware": "#2274a5"}
 def legal_front(result) -> np.ndarray:
     """Return the non-dominated legal points of a Result's population."""
     population: Any = result.pop
-    F = population.get("F")[population.get("interfering_cells") == 0]
+    F: Any = population.get("F")[population.get("interfering_cells") == 0]
     F = np.unique(F, axis=0)
     return F[moocore.is_nondominated(F)] if len(F) else F
-
-
-def share(F: np.ndarray, exact: np.ndarray) -> float:
-    """Return the hypervolume of a front over that of the exact one, from the exact nadir and a tenth of the range beyond."""
-    low, high = exact.min(axis=0), exact.max(axis=0)
-
-    def volume(points):
-        return moocore.hypervolume((points - low) / (high - low), ref=[1.1, 1.1]) if len(points) else 0.0
-
-    return volume(F) / volume(exact)
 
 
 def main() -> None:
@@ -66,8 +57,9 @@ def main() -> None:
         1, 2, figsize=(10.5, 4.6), gridspec_kw={"width_ratios": [1, 1.25]}, layout="constrained"
     )
     plot_map(grid, ax=left)
-    paths = {"paper": problem.decode(paper_result.opt.get("X")), "path-aware": problem.decode(aware_result.opt.get("X"))}
-    for name, decoded in paths.items():
+    for name, result in (("paper", paper_result), ("path-aware", aware_result)):
+        population: Any = result.opt
+        decoded = problem.decode(population.get("X"))
         legal = np.flatnonzero(decoded.interfering_cells == 0)
         for k in legal:
             cells = decoded.cells(int(k))
@@ -76,13 +68,13 @@ def main() -> None:
     right.step(*exact[order].T, where="post", color=COLOURS["exact"], lw=1, zorder=2)
     right.plot(*exact.T, "o", ms=7, mfc="none", mec=COLOURS["exact"], label=f"exact front, {len(exact)} points", zorder=5)
     for name, F in fronts.items():
-        text = f"{labels[name]}: {share(F, exact):.2f} of its hypervolume"
+        text = f"{labels[name]}: {ratio(F, exact):.2f} of its hypervolume"
         right.plot(*F.T, "s" if name == "paper" else "o", ms=4, color=COLOURS[name], label=text, zorder=4)
     right.set(xlabel="Path length [cells]", ylabel="Path vulnerability")
     right.legend(frameon=False, fontsize=9, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     right.spines[["top", "right"]].set_visible(False)
     figure.savefig(arguments.file, dpi=150)
-    print(", ".join(f"{name} {share(F, exact):.3f}" for name, F in fronts.items()), f"of {len(exact)} points; {arguments.file}")
+    print(", ".join(f"{name} {ratio(F, exact):.3f}" for name, F in fronts.items()), f"of {len(exact)} points; {arguments.file}")
 
 
 if __name__ == "__main__":

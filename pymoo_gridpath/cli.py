@@ -219,7 +219,7 @@ def _plan(arguments) -> int:
         raise GridPathError(f"--max-seconds is for --algorithm exact, not for {name}; expected --generations instead")
     if not COMPILED and (isinstance(algorithm, ExactFront) or problem.representation.name == "cells"):
         print(
-            "numba is not installed, so this search runs as plain Python, many times slower: pip install 'pymoo_gridpath[fast]'",
+            "numba is not installed, so the search runs as plain Python, many times slower; pip install 'pymoo_gridpath[fast]'",
             file=sys.stderr,
         )
     _make_directory(arguments.output)
@@ -229,7 +229,7 @@ def _plan(arguments) -> int:
         results = _search(problem, algorithm, arguments, stop)
         stop.searching = False
         if not any(len(result.pop) for result in results):
-            print(f"pymoo-gridpath: no path was found; the search {results[0].message}", file=sys.stderr)
+            print(f"pymoo-gridpath: no path was found: {results[0].message}", file=sys.stderr)
             return EXIT_NO_PATH
         trade_off, files = _write_paths(results, arguments, name, stop.requested)
 
@@ -344,7 +344,7 @@ def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
 
     with Progress(arguments.runs, arguments.generations) as progress:
         if isinstance(algorithm, ExactFront):
-            algorithm = ExactFront(seconds=arguments.max_seconds, watch=watch)
+            algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)
             return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)
         termination = ("n_gen", arguments.generations)
         return minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-import importlib.util
+import warnings
 from collections.abc import Callable
 from typing import TypeVar
+
+try:
+    import numba
+except ModuleNotFoundError:
+    numba = None
+except ImportError as error:
+    # An installed numba that does not fit numpy must not take the package with it.
+    numba = None
+    warnings.warn(f"numba cannot be imported, so kernels run as plain Python: {error}", stacklevel=2)
 
 F = TypeVar("F", bound=Callable)
 
 #: Whether kernels are compiled: numba, the ``fast`` extra, is installed.
-COMPILED = importlib.util.find_spec("numba") is not None
+COMPILED = numba is not None
 
 
 def kernel(function: F) -> F:
@@ -18,8 +27,9 @@ def kernel(function: F) -> F:
     Kernels take numbers and arrays and give the same bits either way. They draw no random numbers of their own and keep to
     whole numbers below 2**63 and to sums and products of floats, which Python and the compiler carry out alike.
     """
-    if not COMPILED:
+    if numba is None:
         return function
-    import numba
-
-    return numba.njit(cache=True, nogil=True)(function)  # pyright: ignore[reportReturnType]
+    try:
+        return numba.njit(cache=True, nogil=True)(function)  # pyright: ignore[reportReturnType]
+    except RuntimeError:  # no folder to keep compiled code in
+        return numba.njit(nogil=True)(function)  # pyright: ignore[reportReturnType]

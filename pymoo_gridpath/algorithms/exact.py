@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import Any
 
@@ -9,6 +10,7 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.core.population import Population
 from pymoo.util.display.output import Output
 
+from pymoo_gridpath.algorithms._arguments import check
 from pymoo_gridpath.exact import Budget, exact_front
 from pymoo_gridpath.exact.budget import Meter
 
@@ -22,14 +24,14 @@ class ExactFront(Algorithm):
 
     Parameters
     ----------
-    seconds : float, optional
-    labels : int, optional
-    memory : int, optional
+    max_seconds : float, optional
+    max_labels : int, optional
+    max_memory : int, optional
     watch : callable, optional
         Budgets, see `Budget`. When one is used up, the Result holds the best paths found by then, ``result.success`` is
         False, and ``result.message`` says which budget it was.
     **kwargs
-        As for every pymoo algorithm.
+        What every pymoo algorithm takes, such as ``callback``.
 
     Attributes
     ----------
@@ -39,7 +41,8 @@ class ExactFront(Algorithm):
     Raises
     ------
     CapabilityError
-        When the run begins, if an objective does not add up along a path or there are more than three, see `exact_front`.
+        If an argument is unknown; when the run begins, if an objective does not add up along a path or there are more than
+        three, see `exact_front`.
 
     References
     ----------
@@ -60,14 +63,16 @@ class ExactFront(Algorithm):
 
     def __init__(
         self,
-        seconds: float | None = None,
-        labels: int | None = None,
-        memory: int | None = None,
+        max_seconds: float | None = None,
+        max_labels: int | None = None,
+        max_memory: int | None = None,
         watch: Callable[[Meter], bool] | None = None,
         **kwargs,
     ):
+        own = ("max_seconds", "max_labels", "max_memory", "watch")
+        check("ExactFront", kwargs, dict.fromkeys((*inspect.signature(Algorithm).parameters, *own)))
         super().__init__(output=kwargs.pop("output", Output()), **kwargs)
-        self.budget = Budget(seconds, labels, memory, watch)
+        self.budget = Budget(max_seconds, max_labels, max_memory, watch)
 
     def _initialize_infill(self):
         self.found = exact_front(self.problem, self.budget)

@@ -28,7 +28,7 @@ from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, default_operators
+from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
 from pymoo_gridpath.operators.selection import CrowdingTournament
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 
@@ -164,6 +164,11 @@ def build(
     settings |= given | _references(row, problem, pop_size, given)
     if "pop_size" in accepted:
         settings["pop_size"] = pop_size
+    if "survival" not in given and isinstance(settings.get("crossover"), SpliceCrossover):
+        # Its children are legal, so that many soon have equal objectives.
+        survival = settings.get("survival")
+        if isinstance(survival, RankAndSmoothness):
+            survival.distinct = True
     if row.name in ("NSGA2", "SPEA2") and all(_is_ours(given[key]) for key in _OPERATORS if key in given):
         # The same mating several times as fast; operators from elsewhere may need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))

@@ -8,21 +8,33 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import psutil
+
+from pymoo_gridpath.errors import GridPathError
 
 # Share of the free memory that a search may take by default; the rest is for its end, and for others.
 _SHARE = 0.7
+
+
+# Labels are numbered in 32 bits.
+_MOST_LABELS = 2**31 - 2**20
 
 
 def free_memory() -> int:
     """Return how many bytes can be taken without driving others out: what the machine, and its container, has left."""
     free = psutil.virtual_memory().available
     root = Path("/sys/fs/cgroup")
-    for limit, used in (("memory.max", "memory.current"), ("memory/memory.limit_in_bytes", "memory/memory.usage_in_bytes")):
+    names = ("memory.max", "memory.current", "memory.stat", "inactive_file")
+    names_v1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "memory.stat", "total_inactive_file")
+    for folder, (limit, used, table, reclaimable) in ((root, names), (root / "memory", names_v1)):
         try:
-            free = min(free, int((root / limit).read_text()) - int((root / used).read_text()))
-        except (OSError, ValueError):  # not there, or "max"
+            left = int((folder / limit).read_text()) - int((folder / used).read_text())
+            # What files have left in memory counts as used, but is given up when it is needed.
+            left += int(dict(line.split() for line in (folder / table).read_text().splitlines())[reclaimable])
+        except (OSError, ValueError, KeyError):  # not there, or "max"
             continue
+        free = min(free, left)
     return max(int(free), 0)
 
 
@@ -32,19 +44,31 @@ class Budget:
 
     Attributes
     ----------
-    seconds : float, optional
-    labels : int, optional
+    max_seconds : float, optional
+        Asked between the backward searches that give the bounds, and many times a second after them.
+    max_labels : int, optional
         Labels open and closed at a time.
-    memory : int, optional
-        Bytes that labels take; by default 70 % of what the machine has free when the search begins.
+    max_memory : int, optional
+        Bytes of the arrays of the search; by default 70 % of what the machine has free when it begins.
     watch : callable, optional
         Called now and then with the `Meter`; if it returns True, the search ends.
+
+    Raises
+    ------
+    GridPathError
+        If one of the numbers is negative or none.
     """
 
-    seconds: float | None = None
-    labels: int | None = None
-    memory: int | None = None
+    max_seconds: float | None = None
+    max_labels: int | None = None
+    max_memory: int | None = None
     watch: Callable[[Meter], bool] | None = None
+
+    def __post_init__(self):
+        for name in ("max_seconds", "max_labels", "max_memory"):
+            value = getattr(self, name)
+            if value is not None and not (isinstance(value, int | float | np.number) and value >= 0):
+                raise GridPathError(f"{name} is {value!r}, expected a number, zero or more")
 
 
 class Meter:
@@ -58,18 +82,20 @@ class Meter:
     ----------
     message : str
         Which budget has been used up, in words; empty while there is some left.
+    n_fixed : int
+        Bytes of the arrays whose size is that of the grid; whoever makes them keeps it up to date.
     n_labels, n_bytes : int
         The most labels, and bytes for them, so far.
     """
 
     def __init__(self, budget: Budget):
         self.begin = time.perf_counter()
-        self.seconds = math.inf if budget.seconds is None else budget.seconds
-        self.labels = math.inf if budget.labels is None else budget.labels
-        self.memory = _SHARE * free_memory() if budget.memory is None else budget.memory
+        self.seconds = math.inf if budget.max_seconds is None else budget.max_seconds
+        self.labels = _MOST_LABELS if budget.max_labels is None else min(budget.max_labels, _MOST_LABELS)
+        self.memory = _SHARE * free_memory() if budget.max_memory is None else budget.max_memory
         self.watch = budget.watch
         self.message = ""
-        self.n_labels = self.n_bytes = 0
+        self.n_fixed = self.n_labels = self.n_bytes = 0
 
     @property
     def elapsed(self) -> float:
@@ -84,14 +110,14 @@ class Meter:
         """Keep the largest numbers of labels and bytes."""
         self.n_labels, self.n_bytes = max(self.n_labels, int(n_labels)), max(self.n_bytes, int(n_bytes))
 
-    def check(self, n_labels: int, n_bytes: int) -> None:
+    def check(self, n_labels: int = 0, n_bytes: int = 0) -> None:
         """Set `message` if a budget is used up."""
         self.note(n_labels, n_bytes)
         if self.elapsed >= self.seconds:
             self.message = f"the time budget of {self.seconds:g} s is used up"
         elif n_labels >= self.labels:
             self.message = f"the budget of {self.labels:,} labels is used up"
-        elif n_bytes >= self.memory:
+        elif self.n_fixed + n_bytes >= self.memory:
             self.message = f"the memory budget of {self.memory / 2**20:.3g} MiB is used up"
         elif self.watch is not None and self.watch(self):
             self.message = "stopped by who watched it"

@@ -16,11 +16,14 @@ from pymoo_gridpath.search import DIAGONAL, turn_units
 #: diagonals to this unit, so they compare as they should.
 LENGTH_UNIT = 2**36
 
-#: One unit of a cell's cost; potentials are multiples of 1 / FIELD_UNIT.
-FIELD_UNIT = 2**30
-
 # No sum along a path may come near 2**61.
 _LARGEST_SUM = 2.0**58
+
+# Bits, from the first of the largest cost, that costs may have to be taken as they are; potentials of the package have 33.
+_BITS = 44
+
+# Between costs further apart than this, sums would lose the smaller ones.
+_WIDEST = 2.0**32
 
 
 class Costs(NamedTuple):
@@ -36,24 +39,30 @@ class Costs(NamedTuple):
         Whether some cost depends on the heading before a step.
     unit : numpy.ndarray of float, shape (k,)
         What a cost of 1 is in the objective.
+    rounded : numpy.ndarray of bool, shape (k,)
+        Whether costs had to be rounded to whole numbers.
     """
 
     step: np.ndarray
     field: np.ndarray
     with_heading: bool
     unit: np.ndarray
+    rounded: np.ndarray
 
     def take(self, order) -> Costs:
         """Return the costs of some objectives, in that order."""
         order = list(order)
-        return Costs(self.step[order].copy(), self.field[order].copy(), self.with_heading, self.unit[order])
+        return Costs(
+            self.step[order].copy(), self.field[order].copy(), self.with_heading, self.unit[order], self.rounded[order]
+        )
 
 
 def integer_costs(objectives, grid: OccupancyGrid) -> Costs:
     """Return objectives as whole numbers.
 
-    Lengths are counted in `LENGTH_UNIT`, turns in 45 degrees, and costs of cells in `FIELD_UNIT` (in coarser units if the sum
-    over all cells could otherwise overflow), to which they are rounded.
+    Lengths are counted in 1 / `LENGTH_UNIT` cells and turns in 45 degrees. Costs of cells are counted in a power of two if they
+    have no more than 44 bits, as potentials have, else in the one of 0.1, 0.01, ..., 1e-9 of which they are multiples; if there
+    is none, they are rounded to a power of two, at most 2**-57 of their sum over all free cells.
 
     Parameters
     ----------
@@ -68,7 +77,7 @@ def integer_costs(objectives, grid: OccupancyGrid) -> Costs:
     """
     step = np.zeros((len(objectives), 9, 8), dtype=np.int64)
     field = np.zeros((len(objectives), grid.width * grid.height), dtype=np.int64)
-    unit = np.ones(len(objectives))
+    unit, rounded = np.ones(len(objectives)), np.zeros(len(objectives), dtype=bool)
     for k, objective in enumerate(objectives):
         if type(objective) is Length:
             step[k] = np.where(DIAGONAL, round(SQRT2 * LENGTH_UNIT), LENGTH_UNIT)
@@ -77,12 +86,12 @@ def integer_costs(objectives, grid: OccupancyGrid) -> Costs:
             step[k] = turn_units()
             unit[k] = TURN_UNIT
         else:
-            field[k], unit[k] = _field(objective, grid)
-    return Costs(step, field, any(type(objective) is Turn for objective in objectives), unit)
+            field[k], unit[k], rounded[k] = _field(objective, grid)
+    return Costs(step, field, any(type(objective) is Turn for objective in objectives), unit, rounded)
 
 
-def _field(objective: Objective, grid: OccupancyGrid) -> tuple[np.ndarray, float]:
-    """Return the costs of cells and their unit."""
+def _field(objective: Objective, grid: OccupancyGrid) -> tuple[np.ndarray, float, bool]:
+    """Return the costs of cells, their unit, and whether they had to be rounded."""
     values = objective.field(grid)
     if values is None:
         raise CapabilityError(
@@ -95,8 +104,32 @@ def _field(objective: Objective, grid: OccupancyGrid) -> tuple[np.ndarray, float
             f"the field of the objective {objective.name!r} has negative or infinite values in free cells, expected costs of "
             f"zero or more for an exact front"
         )
-    largest = free.sum()
-    per_one = FIELD_UNIT
-    while largest * per_one > _LARGEST_SUM:
-        per_one /= 2
-    return np.rint(free * per_one).astype(np.int64), 1 / per_one
+    unit, rounded = _unit(free)
+    if unit is None:
+        raise CapabilityError(
+            f"the field of the objective {objective.name!r} has values from {free[free > 0].min():g} to {free.max():g}, too "
+            f"far apart to be added up exactly; mark the dearest cells as occupied instead"
+        )
+    return np.rint(free / unit).astype(np.int64), unit, rounded
+
+
+def _unit(values: np.ndarray) -> tuple[float | None, bool]:
+    """Return the unit in which values are counted, and whether they are rounded to it.
+
+    The unit is None if the sum of the values overflows or the smaller half of them would be lost in it.
+    """
+    with np.errstate(over="ignore"):
+        total = values.sum()
+    if total == 0.0:
+        return 1.0, False
+    if not np.isfinite(total):
+        return None, True
+    finest = max(2.0 ** np.ceil(np.log2(total) - np.log2(_LARGEST_SUM)), np.finfo(float).tiny)
+    # Numbers that need more bits than these are taken for results of a calculation, with its noise in their last bits.
+    short = max(finest, 2.0 ** (np.ceil(np.log2(values.max())) - _BITS))
+    if (np.rint(values / short) * short == values).all():
+        return float(short), False
+    for per_one in (10**k for k in range(1, 10)):
+        if total * per_one <= _LARGEST_SUM and (np.rint(values * per_one) / per_one == values).all():
+            return 1 / per_one, False
+    return None if values.max() > _WIDEST * np.median(values[values > 0]) else float(finest), True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import moocore
 import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError, GridPathError
@@ -14,29 +15,34 @@ from pymoo_gridpath.exact.two import Front, front_of_two
 from pymoo_gridpath.objectives import Length, Turn
 from pymoo_gridpath.search.sequences import Sequences
 
-# Labels hold the cell in 28 bits.
-_MOST_CELLS = 2**28
+# Lengths of paths across more cells could overflow.
+_MOST_CELLS = 2**24
 
-# By how much a score may differ from the sum that was minimised.
-_SAME = 1e-6
+# By which share of the largest a score may differ from the sum that was minimised.
+_SAME = 1e-9
+
+# Of objectives whose costs had to be rounded, values that differ by no more than this share of the largest are equal.
+_EQUAL = 1e-12
 
 
 @dataclass(frozen=True)
 class ExactResult:
-    """The Pareto front of a problem, or the part of it that a budget allowed.
+    """The Pareto front of a problem, or what a budget allowed.
 
     Attributes
     ----------
     X : numpy.ndarray, shape (N, n_var)
         A path for each point, as genes.
     F : numpy.ndarray of float, shape (N, n_obj)
-        The front, in ascending order of the first objective, no point twice.
+        The front, in ascending order of the first objective, no point twice. If it is not complete, points that are mutually
+        non-dominated: of two objectives the two ends of the front and the best paths between them that were found, which may
+        lie off the front; of three a part of the front.
     complete : bool
         Whether this is the whole front.
     message : str
         How the search ended.
     n_labels, n_bytes : int
-        The most labels at a time, and the bytes that they took.
+        The most labels at a time, and the bytes that they took, besides those of arrays of the size of the grid.
     seconds : float
         Time that the search took.
     """
@@ -68,7 +74,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     CapabilityError
         If there are more than three objectives or one does not add up, see `integer_costs`.
     GridPathError
-        If the representation cannot code a path of the front, or a score is not the sum that its field says.
+        If the representation cannot code a path of the front (`CellSequence` with too small ``max_cells``), or a score is not
+        the sum that its field says.
 
     Examples
     --------
@@ -96,7 +103,12 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     points = front.points[:, np.argsort(order)]
     seconds = meter.elapsed
     X, F = _scored(problem, costs, front, points)
-    message = f"ended early, {meter.message}; {len(F)} paths found" if meter.message else f"all {len(F)} points found"
+    if meter.message:
+        message = f"ended early, {meter.message}; {len(F)} paths found"
+    elif len(F):
+        message = f"all {len(F)} points found"
+    else:
+        message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
     return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds)
 
 
@@ -114,13 +126,19 @@ def _scored(problem, costs: Costs, front: Front, points: np.ndarray) -> tuple[np
     F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
     start = costs.field[:, problem.representation.moves.index(problem.start)]
     expected = (points + start) * costs.unit
-    if not np.allclose(F, expected, rtol=_SAME, atol=_SAME):
-        wrong = np.flatnonzero(~np.isclose(F, expected, rtol=_SAME, atol=_SAME).all(axis=0))[0]
+    close = np.abs(F - expected) <= _SAME * np.abs(expected).max(axis=0, initial=0.0)
+    if not close.all():
+        wrong = problem.objective_names[np.flatnonzero(~close.all(axis=0))[0]]
         raise GridPathError(
-            f"the objective {problem.objective_names[wrong]!r} scores a path otherwise than by the sum of its field over the "
-            f"visited cells, expected a field of None then"
+            f"the objective {wrong!r} scores a path otherwise than by the sum of its field over the visited cells, expected a "
+            f"field of None then"
         )
     keep = np.lexsort(F.T[::-1])
+    if len(F) and costs.rounded.any():
+        # Where costs had to be rounded, points may differ by no more than that; they count as one.
+        compared = F[keep]
+        compared[:, costs.rounded] = np.rint(F[keep][:, costs.rounded] / (_EQUAL * F.max(axis=0)[costs.rounded]))
+        keep = keep[moocore.is_nondominated(compared)]
     if problem.obstacles == "limit":
         k = problem.objective_names.index("vulnerability")
         keep = keep[F[keep, k] <= problem.potential_limit]

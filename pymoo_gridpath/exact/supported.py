@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
@@ -21,19 +22,25 @@ class Hull(NamedTuple):
         Least first and least second cost from each state to the goal.
     points : numpy.ndarray of int64, shape (n, 2)
         Costs of paths, non-dominated, in ascending order of the first; the first and the last are the ends of the front.
-    weights : numpy.ndarray of float, shape (n - 1, 2), or (1, 2) for a single point
-        Weights of a sum of both costs for each gap between neighbouring points.
-    weighted : numpy.ndarray of float, shape (n_states, len(weights))
+    paths : list of numpy.ndarray
+        The cells of a path for each point.
+    weights : numpy.ndarray of float, shape (n_gaps, 2)
+        Weights of a sum of both costs for each gap between neighbouring points; one row if there is a single point.
+    weighted : numpy.ndarray of float, shape (n_states, n_weights)
         Least weighted sum from each state to the goal.
+    column : numpy.ndarray of int64, shape (n_gaps,)
+        Column of ``weighted`` for each gap.
     """
 
     bounds: np.ndarray
     points: np.ndarray
+    paths: list[np.ndarray]
     weights: np.ndarray
     weighted: np.ndarray
+    column: np.ndarray
 
 
-def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int) -> Hull:
+def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter) -> Hull:
     """Return ends and hull of a front of two objectives by single-objective searches.
 
     Parameters
@@ -44,6 +51,8 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     start, goal : int
     n_weights : int
         How many weighted sums to minimise at most, those first that belong to the widest gaps of the hull.
+    meter : Meter
+        Once a budget is used up, no more of them are minimised; the two ends are found in any case.
 
     References
     ----------
@@ -52,24 +61,44 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     """
     searches = [backward_costs(moves, *_pair(costs, order), goal, costs.with_heading) for order in ((0, 1), (1, 0))]
     bounds = np.stack([search[0] for search, _ in searches])
-    left = _follow(moves, costs, costs.take((0, 1)), searches[0], start, goal)
-    right = _follow(moves, costs, costs.take((1, 0)), searches[1], start, goal)
+    (left, first), (right, last) = (
+        _follow(moves, costs, costs.take(order), search, start, goal)
+        for order, search in zip(((0, 1), (1, 0)), searches, strict=True)
+    )
+    del searches
+    n_weights = _affordable(n_weights, bounds, meter)
+    weighted = np.empty((bounds.shape[1], n_weights))
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
-    points, found = {left, right}, []
+    found, used = {left: first, right: last}, []
     gaps = [(0.0, left, right)] if left != right else []
-    while gaps and len(found) < n_weights:
+    while gaps and len(used) < n_weights:
+        meter.check()
+        if meter.message:
+            break
         _, low, high = heapq.heappop(gaps)
-        weights = _normal(low, high)
-        search, point = _minimise(moves, costs, weights, start, goal)
-        found.append((weights, search))
-        points.add(point)
+        used.append(_normal(low, high))
+        weighted[:, len(used) - 1], point, path = _minimise(moves, costs, used[-1], start, goal)
+        found.setdefault(point, path)
         if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
             for a, b in ((low, point), (point, high)):
                 heapq.heappush(gaps, (-max((b[0] - a[0]) / extent[0], (a[1] - b[1]) / extent[1]), a, b))
-    hull = np.array(sorted(points))
-    hull = hull[np.minimum.accumulate(hull[:, 1]) == hull[:, 1]]
-    hull = hull[np.concatenate([[True], hull[1:, 1] < hull[:-1, 1]])]
-    return _with_bounds(bounds, hull, found)
+    if not used:
+        used, weighted = [(1.0, 1.0)], bounds.sum(axis=0, dtype=float)[:, None]
+    points = np.array(sorted(found))
+    points = points[np.concatenate([[True], points[1:, 1] < np.minimum.accumulate(points[:, 1])[:-1]])]
+    column = _nearest(points, used)
+    paths = [found[int(a), int(b)] for a, b in points]
+    return Hull(bounds, points, paths, np.array(used)[column], weighted, column)
+
+
+def _affordable(n_weights: int, bounds: np.ndarray, meter: Meter) -> int:
+    """Return how many weighted sums there is memory for, and note what arrays of the size of the grid take."""
+    n_states = bounds.shape[1]
+    # Bounds, a search under way with its costs, and the states of the label search.
+    base = n_states * (bounds.itemsize * 2 + 17 + 32 + 40)
+    n_weights = max(0, min(n_weights, int((meter.memory / 2 - base) // (8 * n_states))))
+    meter.n_fixed = base + 8 * n_states * max(n_weights, 1)
+    return n_weights
 
 
 def _pair(costs: Costs, order) -> tuple[np.ndarray, np.ndarray]:
@@ -77,8 +106,8 @@ def _pair(costs: Costs, order) -> tuple[np.ndarray, np.ndarray]:
     return taken.step, taken.field
 
 
-def _follow(moves: Moves, costs: Costs, searched: Costs, found, start: int, goal: int) -> tuple[int, int]:
-    """Return the costs of the path from the start that a search in other costs, or another order, has found cheapest."""
+def _follow(moves: Moves, costs: Costs, searched: Costs, found, start: int, goal: int):
+    """Return costs and cells of the path from the start that a search, in other costs or another order, found cheapest."""
     search, ahead = found
     best, first = (UNREACHABLE, UNREACHABLE), -1
     for m in range(8):
@@ -90,22 +119,27 @@ def _follow(moves: Moves, costs: Costs, searched: Costs, found, start: int, goal
             if total < best:
                 best, first = total, m
     total = np.zeros(2, dtype=np.int64)
-    follow(moves.offsets, costs.step, costs.field, costs.with_heading, ahead, start, first, goal, total)
-    return int(total[0]), int(total[1])
+    path = np.empty(moves.n_cells + 1, dtype=np.int64)
+    n = follow(moves.offsets, costs.step, costs.field, costs.with_heading, ahead, start, first, goal, total, path)
+    return (int(total[0]), int(total[1])), path[:n].copy()
 
 
 @kernel
-def follow(offsets, step, field, with_heading, ahead, start, first, goal, total):
-    """Add up costs along a path that begins with a step along ``first`` and goes on as ``ahead`` says."""
+def follow(offsets, step, field, with_heading, ahead, start, first, goal, total, path):
+    """Add up costs along a path that begins along ``first`` and goes on as ``ahead`` says; return how many cells it has."""
     cell = start
+    path[0] = start
+    n = 1
     before = 8
     heading = np.int64(first)
     while True:
         cell += offsets[heading]
+        path[n] = cell
+        n += 1
         for k in range(2):
             total[k] += step[k, before, heading] + field[k, cell]
         if cell == goal:
-            return
+            return n
         if with_heading:
             before = heading
         heading = np.int64(ahead[8 * cell + heading if with_heading else cell])
@@ -119,27 +153,20 @@ def _normal(low, high) -> tuple[float, float]:
 
 
 def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int):
-    """Return least weighted sums from every state, rounded down step by step, and the point of a path that has them."""
+    """Return least weighted sums from every state, rounded down step by step, and the point and the cells of their path."""
     step = np.stack([_weighted(costs.step, weights), costs.step[0]])
     field = np.stack([_weighted(costs.field, weights), costs.field[0]])
     found = backward_costs(moves, step, field, goal, costs.with_heading)
-    point = _follow(moves, costs, Costs(step, field, costs.with_heading, costs.unit), found, start, goal)
-    return found[0][0], point
+    point, path = _follow(moves, costs, costs._replace(step=step, field=field), found, start, goal)
+    return found[0][0], point, path
 
 
 def _weighted(values: np.ndarray, weights) -> np.ndarray:
     return np.floor(weights[0] * values[0] + weights[1] * values[1]).astype(np.int64)
 
 
-def _with_bounds(bounds: np.ndarray, hull: np.ndarray, found) -> Hull:
-    """Give each gap of the hull the weights nearest to its own normal."""
-    if not found:
-        found = [((1.0, 1.0), bounds.sum(axis=0))]
-    angle = np.array([np.arctan2(second, first) for (first, second), _ in found])
-    gap = np.diff(hull, axis=0).astype(float) if len(hull) > 1 else np.array([[1.0, -1.0]])
-    nearest = np.abs(np.arctan2(gap[:, 0], -gap[:, 1])[:, None] - angle[None, :]).argmin(axis=1)
-    weights = np.array([found[k][0] for k in nearest], dtype=float)
-    weighted = np.empty((bounds.shape[1], len(nearest)))
-    for j, k in enumerate(nearest):
-        weighted[:, j] = found[k][1]
-    return Hull(bounds, hull, weights, weighted)
+def _nearest(points: np.ndarray, used) -> np.ndarray:
+    """Return for each gap between points which of the weights are nearest to its normal."""
+    angle = np.array([np.arctan2(second, first) for first, second in used])
+    gap = np.diff(points, axis=0).astype(float) if len(points) > 1 else np.array([[1.0, -1.0]])
+    return np.abs(np.arctan2(gap[:, 0], -gap[:, 1])[:, None] - angle[None, :]).argmin(axis=1)

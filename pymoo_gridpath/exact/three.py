@@ -33,7 +33,8 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
         Of three objectives. If one depends on headings it must be the third.
     start, goal : int
     meter : Meter
-        Ends the search when a budget is used up; the part of the front with the least first costs is returned then.
+        Ends the search when a budget is used up; the part of the front with the least first costs is returned then. Asked first
+        when the lower bounds are known.
 
     References
     ----------
@@ -42,6 +43,7 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     "Dimensionality reduction in multiobjective shortest path search", Computers & Operations Research 64, 2015.
     """
     search = _Search(moves, costs, start, goal)
+    meter.n_fixed = search.n_fixed
     search.run(meter)
     return Front(search.paths(), search.points())
 
@@ -111,6 +113,11 @@ class _Search:
             meter.note(self.n_labels, sum(array.nbytes for array in full.values()))
             if status in full:
                 grow(full[status])
+
+    @property
+    def n_fixed(self) -> int:
+        """Bytes of the arrays whose size is that of the grid."""
+        return self.bounds.nbytes + self.lists.nbytes + self.costs.field.nbytes
 
     @property
     def n_labels(self) -> int:

@@ -88,21 +88,22 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     algorithm", ICAPS 2020 (BOA*). E. L. Ulungu and J. Teghem, "The two phases method", Foundations of Computing and
     Decision Sciences 20(2), 1995.
     """
-    hull = supported_points(moves, costs, start, goal, n_weights)
-    known, searches = hull.points, []
+    hull = supported_points(moves, costs, start, goal, n_weights, meter)
+    known, found = hull.points, [Front(hull.paths, hull.points)]
     for tolerance in (*_TOLERANCES, 0.0):
-        searches.append(_Search(moves, costs, start, goal, hull, known))
-        searches[-1].run(meter, tolerance)
         if meter.message:
-            return _merged(searches)
-        known = _non_dominated(np.concatenate([known, searches[-1].points()]))
-    return Front(searches[-1].paths(), searches[-1].points())
+            break
+        search = _Search(moves, costs, start, goal, hull, known)
+        search.run(meter, tolerance)
+        found.append(Front(search.paths(), search.points()))
+        known = _non_dominated(np.concatenate([known, found[-1].points]))
+    return _merged(found) if meter.message else found[-1]
 
 
-def _merged(searches: list[_Search]) -> Front:
-    """Return what is non-dominated of all that was found."""
-    points = np.concatenate([search.points() for search in searches])
-    paths = [path for search in searches for path in search.paths()]
+def _merged(fronts: list[Front]) -> Front:
+    """Return what is non-dominated of several fronts."""
+    points = np.concatenate([front.points for front in fronts])
+    paths = [path for front in fronts for path in front.paths]
     order = np.lexsort((points[:, 1], points[:, 0]))
     best_before = np.concatenate([[UNREACHABLE], np.minimum.accumulate(points[order, 1])])[: len(order)]
     keep = order[points[order, 1] < best_before]
@@ -127,7 +128,7 @@ class _Search:
         repeat = n_states // moves.n_cells
         self.states[:, FIELD1], self.states[:, FIELD2] = np.repeat(costs.field, repeat, axis=1)
         self.hull = hull
-        self.corners, self.marks = _corners(hull, known)
+        self.corners, self.ceilings, self.marks = _corners(hull, known)
         self.heap = np.empty((1024, 3), dtype=np.int64)
         self.closed = np.empty((1024, 2), dtype=np.int32)
         self.found = np.empty((64, 3), dtype=np.int64)
@@ -168,7 +169,9 @@ class _Search:
                 self.goal,
                 self.hull.weights,
                 self.hull.weighted,
+                self.hull.column,
                 self.corners,
+                self.ceilings,
                 self.marks,
                 self.heap,
                 self.closed,
@@ -212,61 +215,64 @@ def grow(array: np.ndarray) -> None:
     array.resize((rows, *array.shape[1:]), refcheck=False)
 
 
-def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the corners of the staircase of known points, and what labels must stay below in each gap of the hull.
 
     Returns
     -------
-    corners : numpy.ndarray of float, shape (n, 3)
+    corners : numpy.ndarray of int64, shape (n, 3)
         f1 and f2 that a new point stays below, and the gap that the corner lies in, ascending. A corner lies one unit beyond
         the known points, which have to be found again.
-    marks : numpy.ndarray of float, shape (n_gaps, 3)
-        Least upper bounds of the weighted sum, of f1 and of f2 over the corners of each gap; the kernel lowers them.
+    ceilings : numpy.ndarray of float, shape (n_gaps,)
+        Least upper bound of the weighted sum over the corners of each gap; the kernel lowers it, and the next.
+    marks : numpy.ndarray of int64, shape (n_gaps, 2)
+        Least upper bounds of f1 and of f2 over the corners of each gap.
     """
     n_gaps = len(hull.weights)
     beyond, above = (known[1:, 0], known[:-1, 1]) if len(known) > 1 else (known[:, 0], known[:, 1])
-    corners = np.empty((len(beyond), 3))
+    corners = np.empty((len(beyond), 3), dtype=np.int64)
     corners[:, 0], corners[:, 1] = beyond + 1, above + 1
     corners[:, 2] = np.minimum(np.searchsorted(hull.points[1:, 0], beyond), n_gaps - 1)
-    marks = np.full((n_gaps, 3), -1.0)
+    ceilings, marks = np.full(n_gaps, -1.0), np.full((n_gaps, 2), -1)
     for j in range(n_gaps):
         mine = corners[corners[:, 2] == j, :2]
         if len(mine):
-            marks[j, 0] = (mine @ hull.weights[j]).max() * (1 + _ROUNDING)
-            marks[j, 1:] = mine.max(axis=0)
-    return corners, marks
+            ceilings[j] = (mine @ hull.weights[j]).max() * (1 + _ROUNDING)
+            marks[j] = mine.max(axis=0)
+    return corners, ceilings, marks
 
 
 @kernel
-def promising(f1, f2, g1, g2, weighted, weights, marks, gap):
+def promising(f1, f2, g1, g2, weighted, column, weights, ceilings, marks, gap):
     """Whether a label can end below the staircase of known points in one of the gaps from ``gap`` on."""
     for j in range(gap, len(weights)):
-        if f1 < marks[j, 1] and f2 < marks[j, 2] and weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[j] < marks[j, 0]:
+        total = weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[column[j]]
+        if f1 < marks[j, 0] and f2 < marks[j, 1] and total < ceilings[j]:
             return True
     return False
 
 
 @kernel
-def lower_marks(corners, weights, marks, counts, f1):
+def lower_marks(corners, weights, ceilings, marks, counts, f1):
     """Leave behind the corners that labels from ``f1`` on cannot reach, and lower the marks of the gap where f1 lies."""
     first = counts[NEXT_CORNER]
     while first < len(corners) and corners[first, 0] <= f1:
         first += 1
     counts[NEXT_CORNER] = first
-    gap = len(marks) if first == len(corners) else int(corners[first, 2])
-    counts[GAP] = gap
-    if gap == len(marks):
+    if first == len(corners):
+        counts[GAP] = len(marks)
         return
-    best2 = float(counts[BEST2])
-    marks[gap, 0] = -1.0
-    marks[gap, 2] = -1.0
+    gap = corners[first, 2]
+    counts[GAP] = gap
+    ceilings[gap] = -1.0
+    marks[gap, 1] = -1
     for k in range(first, len(corners)):
         if corners[k, 2] != gap:
             break
-        second = min(corners[k, 1], best2)
+        second = min(corners[k, 1], counts[BEST2])
         total = (weights[gap, 0] * corners[k, 0] + weights[gap, 1] * second) * (1.0 + 1e-12)
-        marks[gap, 0] = max(marks[gap, 0], total)
-        marks[gap, 2] = max(marks[gap, 2], second)
+        ceilings[gap] = max(ceilings[gap], total)
+        marks[gap, 1] = max(marks[gap, 1], second)
 
 
 @kernel
@@ -280,7 +286,9 @@ def search_two(
     goal,
     weights,
     weighted,
+    column,
     corners,
+    ceilings,
     marks,
     heap,
     closed,
@@ -308,7 +316,7 @@ def search_two(
         Least g2 of the closed labels, lower bounds of the rest in both objectives, costs of the cell in both.
     goal : int
         The goal cell.
-    weights, weighted, corners, marks
+    weights, weighted, column, corners, ceilings, marks
         See `Hull` and `_corners`.
     heap : int64, shape (n, 3)
         Open labels: f1, f2 and ``(8 * cell + heading) << 32 | parent``.
@@ -317,7 +325,7 @@ def search_two(
     found : int64, shape (n, 3)
         Numbers of the closed labels that are non-dominated paths, and their costs.
     counts : int64, shape (7,)
-        State of the search, changed in place like all arrays from ``marks`` on, and ``states``.
+        State of the search, changed in place like all arrays from ``ceilings`` on, and ``states``.
     most_f2, least_f2 : int
         Second objective of the ends of the front.
     tolerance : float
@@ -358,8 +366,8 @@ def search_two(
             continue
         g1 = f1 - states[state, BOUND1]
         if counts[NEXT_CORNER] < len(corners) and corners[counts[NEXT_CORNER], 0] <= f1:
-            lower_marks(corners, weights, marks, counts, f1)
-        if not promising(f1, f2, g1, g2, weighted[state], weights, marks, counts[GAP]):
+            lower_marks(corners, weights, ceilings, marks, counts, f1)
+        if not promising(f1, f2, g1, g2, weighted[state], column, weights, ceilings, marks, counts[GAP]):
             continue
         if with_heading:
             # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
@@ -378,7 +386,7 @@ def search_two(
             found[counts[N_FOUND], 2] = f2
             counts[N_FOUND] += 1
             n_closed += 1
-            lower_marks(corners, weights, marks, counts, f1)
+            lower_marks(corners, weights, ceilings, marks, counts, f1)
             continue
         from_before = legal[cell - offsets[heading]]
         before = heading if with_heading else 8
@@ -400,7 +408,7 @@ def search_two(
             next_f1 = next1 + states[next_state, BOUND1]
             if next_f1 >= 2**61:
                 continue
-            if promising(next_f1, next_f2, next1, next2, weighted[next_state], weights, marks, counts[GAP]):
+            if promising(next_f1, next_f2, next1, next2, weighted[next_state], column, weights, ceilings, marks, counts[GAP]):
                 push(heap, n, next_f1, next_f2, (8 * next_cell + m) << 32 | n_closed)
                 n += 1
         n_closed += 1

@@ -55,17 +55,14 @@ class ArrayPopulation(Population):
             return None
         for key, values in interleaving_args(*args, kwargs=kwargs).items():
             values = _one_each(values, len(individuals))
-            if _is_attribute(individuals[0], key):
+            if hasattr(type(individuals[0]), key):
                 for individual, value in zip(individuals, values, strict=True):
                     setattr(individual, key, value)
             else:
                 for individual, value in zip(individuals, values, strict=True):
-                    individual.data[key] = value
+                    own = vars(individual)
+                    (own if key in own else individual.data)[key] = value
         return self
-
-
-def _is_attribute(individual: Individual, key: str) -> bool:
-    return key in vars(individual) or hasattr(type(individual), key)
 
 
 def _read(individuals: list, key: str) -> list:
@@ -73,9 +70,10 @@ def _read(individuals: list, key: str) -> list:
         # Asked for every generation, and slow one by one.
         limits = [[individual.config.get("cv_eps", 0.0)] for individual in individuals]
         return list(np.array(_read(individuals, "CV")).reshape(-1, 1) <= np.array(limits).reshape(-1, 1))
-    if individuals and _is_attribute(individuals[0], key):
+    if individuals and hasattr(type(individuals[0]), key):
         return list(map(attrgetter(key), individuals))
-    return [individual.data.get(key) for individual in individuals]
+    # What others have set on an individual itself goes before what survival and evaluation keep in its data.
+    return [vars(individual)[key] if key in vars(individual) else individual.data.get(key) for individual in individuals]
 
 
 def _one_each(values, n: int) -> list:

@@ -26,14 +26,23 @@ class RankAndSmoothness(ArraySurvival):
     with the larger crowding distance, which is that of the whole front. Sets ``rank`` and ``crowding``. Infeasible
     individuals come after all feasible ones, in order of their constraint violation.
 
+    Parameters
+    ----------
+    distinct : bool, default False
+        Whether points of the front go before further paths to the same points. Operators that make legal paths only, such as
+        `path_operators`, soon fill the population with paths of equal objectives, and smooth ones of them would push out other
+        points. If True, of paths with equal objectives all but the smoothest come after all other paths of their front,
+        with a crowding distance of 0, and the ends of the front come before all others.
+
     References
     ----------
     Ahmed and Deb (2013), section 5.1.
     """
 
-    def __init__(self):
+    def __init__(self, distinct: bool = False):
         super().__init__(filter_infeasible=True)
         self.nds = NonDominatedSorting()
+        self.distinct = distinct
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
         F, turn = pop.get("F").astype(float), pop.get("turn").astype(float)
@@ -41,9 +50,15 @@ class RankAndSmoothness(ArraySurvival):
         rank = np.full(len(pop), len(pop))
         for k, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_survive)):
             rank[front] = k
-        crowding = crowding_distances(F, rank)
         # Whole fronts come first, so only in the last one that is needed do the further keys decide who survives.
-        survivors = np.lexsort((-crowding, turn, rank))[:n_survive]
+        if self.distinct:
+            repeat = repeats(F, turn)
+            crowding = np.zeros(len(pop))
+            crowding[~repeat] = crowding_distances(F[~repeat], rank[~repeat])
+            survivors = np.lexsort((-crowding, turn, np.isfinite(crowding), repeat, rank))[:n_survive]
+        else:
+            crowding = crowding_distances(F, rank)
+            survivors = np.lexsort((-crowding, turn, rank))[:n_survive]
         pop = pop[survivors]
         pop.set(rank=rank[survivors], crowding=crowding[survivors])
         return pop
@@ -70,6 +85,14 @@ class ArrayRankAndCrowding(ArraySurvival, RankAndCrowding):
         rank = np.repeat(np.arange(len(fronts)), [len(front) for front in fronts])
         pop[np.concatenate(fronts)].set(rank=rank, crowding=np.concatenate(crowding))
         return pop[np.concatenate(survivors)]
+
+
+def repeats(F: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Return who has the objectives of another who turns less, or as much and comes earlier; bool, shape (N,)."""
+    order = np.lexsort((turn, *F.T))
+    repeat = np.zeros(len(F), dtype=bool)
+    repeat[order[1:]] = (F[order[1:]] == F[order[:-1]]).all(axis=1)
+    return repeat
 
 
 def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective, make_objectives
-from pymoo_gridpath.representations import Representation, make_representation
+from pymoo_gridpath.representations import CellSequence, Representation, make_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]
 # Chosen by measurement on the shipped maps and random grids, see the parameter.
@@ -78,7 +78,8 @@ class GridPathProblem(Problem):
     ``pareto_front()`` and ``pareto_set()`` return the exact front of the legal paths, without penalties, and a path for each
     point (see `exact_front`; the first call computes both). They return None if an objective does not add up along a path,
     that is, if it is neither length nor turn and has no field; if there are more than three objectives; or, with a warning,
-    if ``max_seconds`` (60 by default) do not suffice. pymoo asks for the front of its own accord where it prints progress
+    if ``max_seconds`` (60 by default) do not suffice or the representation cannot code a path of the front. pymoo asks for
+    the front of its own accord where it prints progress
     (``verbose=True``), to show how far a run is from it.
 
     Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
@@ -122,13 +123,16 @@ class GridPathProblem(Problem):
         self.penalty = float(self._default_penalty() if penalty is None else penalty)
         self.potential_limit = potential_limit
         self._check_obstacles()
+        fields = [_checked(objective, grid) for objective in self.objectives]
+        if representation == CellSequence.name and axis == "auto":
+            # Room for the safest paths in the fields of these objectives.
+            representation = CellSequence(grid, self.start, self.goal, fields=[field for field in fields if field is not None])
         if isinstance(representation, str):
             representation = make_representation(representation, grid, self.start, self.goal, axis)
         else:
             self._check_representation(representation, axis)
         self.representation = representation
         self._front: ExactResult | None = None
-        fields = [objective.field(grid) for objective in self.objectives]
         self._sums = [None if field is None else representation.prepare(field) for field in fields]
         super().__init__(
             n_var=representation.n_var,
@@ -184,8 +188,11 @@ class GridPathProblem(Problem):
         """Return the exact front, kept for the next call, or None if there is none or the time is too short."""
         if self._front is None:
             try:
-                found = exact_front(self, Budget(seconds=max_seconds))
+                found = exact_front(self, Budget(max_seconds=max_seconds))
             except CapabilityError:
+                return None
+            except GridPathError as error:
+                warnings.warn(f"no Pareto front: {error}", stacklevel=5)
                 return None
             if not found.complete:
                 warnings.warn(
@@ -226,3 +233,17 @@ class GridPathProblem(Problem):
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         paths = self.decode(X)
         return self.score(paths), paths.turn, paths.interfering_cells
+
+
+def _checked(objective: Objective, grid: OccupancyGrid) -> np.ndarray | None:
+    """Return the field of an objective, zero in occupied cells if it is not finite there, or None if it has none."""
+    field = objective.field(grid)
+    if field is None or np.isfinite(field).all():
+        return field
+    if not np.isfinite(field[~grid.occupied]).all():
+        y, x = np.argwhere(~np.isfinite(field) & ~grid.occupied)[0]
+        raise GridPathError(
+            f"the field of the objective {objective.name!r} is {field[y, x]:g} in the free cell ({x}, {y}), expected a finite "
+            f"number; mark cells that no path may enter as occupied"
+        )
+    return np.where(np.isfinite(field), field, 0.0)

@@ -38,10 +38,14 @@ class CellSequence(Representation):
         Cells (x, y).
     max_cells : int, optional
         Genes of a row, the most cells that a path can visit. The default is the larger of two numbers, and no more than
-        the free cells that can be reached. One is 1 more than the length of the shortest among the least vulnerable paths
-        (in the default potential), room for every path that is not dominated in length and vulnerability: each step
-        is at least 1 long, and a longer path would be dominated by that one. The other is 1.5 times the cells of a shortest
+        the free cells that can be reached. One is 1 more than the length of the shortest among the least vulnerable paths,
+        room for every path that is not dominated in length and vulnerability: each step is at least 1 long, and a longer
+        path would be dominated by that one. The other is 1.5 times the cells of a shortest
         path and 8 more.
+    fields : sequence of numpy.ndarray, shape (height, width), optional
+        Costs of cells, the sums of which paths are to be scored by; there is room then for the cheapest paths in each, rather
+        than for the safest in the default potential. A problem that is given the representation by name passes those of its
+        objectives.
 
     Raises
     ------
@@ -68,10 +72,10 @@ class CellSequence(Representation):
     name = "cells"
     vtype = int
 
-    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], max_cells: int | None = None):
+    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], max_cells: int | None = None, fields=()):
         self.grid = grid
         self.start, self.goal = grid.check_query(start, goal)
-        self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells)
+        self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells, fields)
         self.n_var = self.max_cells
         self.xl = np.zeros(self.n_var, dtype=int)
         self.xu = np.full(self.n_var, self.moves.n_cells - 1)
@@ -139,7 +143,7 @@ class CellSequence(Representation):
         if not self.fits(sequences).all():
             raise GridPathError(
                 f"a path visits {lengths.max()} cells, expected at most {self.max_cells}, the max_cells of the {self.name} "
-                f"representation"
+                f"representation; give CellSequence a larger one"
             )
         X = np.full((len(lengths), self.n_var), self.xu[-1], dtype=np.int64)
         X[np.arange(self.n_var) < lengths[:, None]] = sequences.cells
@@ -178,7 +182,7 @@ class CellSequence(Representation):
         return repaired
 
 
-def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None) -> int:
+def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fields) -> int:
     """Return ``max_cells``, checked, or its default."""
     graph = grid.move_graph()
     _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
@@ -189,7 +193,8 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None) -> 
         least += 1
     if max_cells is None:
         reachable = np.count_nonzero(grid.regions == grid.regions.flat[start])
-        safest = 1 + math.floor(_safest_length(grid, graph, start, goal) + 1e-6)
+        fields = [np.maximum(field, 0.0) for field in fields] or [obstacle_potential(grid)]
+        safest = max(1 + math.floor(_safest_length(graph, field.ravel(), start, goal) + 1e-6) for field in fields)
         return min(max(safest, math.ceil(1.5 * least) + 8), int(reachable))
     try:
         given = operator.index(max_cells)
@@ -202,14 +207,14 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None) -> 
     return given
 
 
-def _safest_length(grid: OccupancyGrid, graph: sparse.csr_array, start: int, goal: int) -> float:
-    """Return the length of the shortest among the least vulnerable paths."""
-    potential = obstacle_potential(grid).ravel()
-    tail, head = np.repeat(np.arange(potential.size), np.diff(graph.indptr)), graph.indices
-    cost = sparse.csr_array((potential[head], head, graph.indptr), shape=graph.shape)
+def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal: int) -> float:
+    """Return the length of the shortest among the paths that are cheapest in a field."""
+    tail, head = np.repeat(np.arange(field.size), np.diff(graph.indptr)), graph.indices
+    cost = sparse.csr_array((field[head].astype(float), head, graph.indptr), shape=graph.shape)
     least = csgraph.dijkstra(cost, indices=start)
-    # The sums are exact, so the least vulnerable paths are those whose every step adds no more than it must.
-    needed = least[head] == least[tail] + potential[head]
+    # The cheapest paths are those whose every step adds no more than it must; sums of potentials are exact, others nearly.
+    with np.errstate(invalid="ignore"):
+        needed = least[tail] + field[head] <= least[head] * (1 + 1e-12)
     steps = sparse.csr_array((graph.data[needed], (tail[needed], head[needed])), shape=graph.shape)
     return float(csgraph.dijkstra(steps, indices=start)[goal])
 

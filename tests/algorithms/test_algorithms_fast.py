@@ -281,3 +281,12 @@ def test_evaluated_individuals_are_not_evaluated_again(make_problem):
     assert evaluator.n_eval == 4
     assert pop.get("CV").tolist() == [[0.0]] * 4
     assert evaluator.eval(problem, pop[0]) is pop[0]
+
+
+def test_attributes_that_a_callback_sets_are_read_back():
+    pop = ArrayPopulation.of(np.arange(6).reshape(3, 2))
+    pop[1].tag = 5
+    assert pop.get("tag", to_numpy=False) == [None, 5, None]
+    pop.set("tag", [1, 2, 3])
+    assert pop.get("tag").tolist() == [1, 2, 3]
+    assert pop[1].tag == 2

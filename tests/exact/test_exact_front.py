@@ -156,12 +156,12 @@ TWO, THREE = ("length", "vulnerability"), ("length", "vulnerability", "turn")
 @pytest.mark.parametrize(
     ("objectives", "budget"),
     [
-        (TWO, {"labels": 2000}),
-        (TWO, {"seconds": 0.0}),
-        (TWO, {"memory": 60_000}),
-        (THREE, {"labels": 2000}),
-        (THREE, {"seconds": 0.0}),
-        (THREE, {"memory": 160_000}),
+        (TWO, {"max_labels": 2000}),
+        (TWO, {"max_seconds": 0.0}),
+        (TWO, {"max_memory": 60_000}),
+        (THREE, {"max_labels": 2000}),
+        (THREE, {"max_seconds": 0.0}),
+        (THREE, {"max_memory": 160_000}),
     ],
     ids=str,
 )
@@ -172,8 +172,8 @@ def test_a_budget_ends_the_search_with_the_part_found(objectives, budget):
     assert result.message.startswith("ended early, the ")
     assert "is used up" in result.message
     found = result.algorithm.found
-    assert found.n_labels <= 2000 + 16 or "labels" not in budget
-    assert found.n_bytes <= 250_000 or "memory" not in budget
+    assert found.n_labels <= 2000 + 16 or "max_labels" not in budget
+    assert found.n_bytes <= 250_000 or "max_memory" not in budget
     if len(found.F):
         # Every path is legal, and none claims more than the front holds.
         assert (problem.decode(found.X).interfering_cells == 0).all()
@@ -199,6 +199,104 @@ def test_the_least_budget_of_memory_is_what_is_free():
 
     meter = Meter(Budget())
     assert 0 < meter.memory < free_memory() * 1.5
+
+
+class Cost(Objective):
+    """The sum of given costs of cells."""
+
+    def __init__(self, name, values):
+        self.name = self.label = name
+        self.values = np.asarray(values)
+
+    def field(self, grid):
+        return self.values
+
+    def __call__(self, paths, sums):
+        return paths.total(sums).astype(float)
+
+
+@pytest.mark.parametrize("scale", [1e-100, 1e-10, 1e-3, 1 / 3, 1e7, 1e12, 1e200])
+def test_the_front_does_not_depend_on_the_unit_of_a_cost(scale):
+    for seed in range(12):
+        random_state = np.random.default_rng(seed)
+        grid = random_grid(7, seed)
+        whole = random_state.integers(0, 10, size=(2, 7, 7))
+        plain, scaled = (
+            GridPathProblem(grid, (0, 0), (6, 6), "cells", [Cost("a", costs[0]), Cost("b", costs[1])]).pareto_front()
+            for costs in (whole, whole * scale)
+        )
+        np.testing.assert_allclose(scaled / scale, plain, rtol=1e-12)
+
+
+def test_a_single_dear_cell_keeps_its_point():
+    field = np.zeros((3, 3))
+    field[1, 1] = 1e7
+    grid = OccupancyGrid(np.zeros((3, 3)), corner_cutting=True)
+    front = GridPathProblem(grid, (0, 0), (2, 2), "cells", ["length", Cost("risk", field)]).pareto_front()
+    np.testing.assert_allclose(front, [[2 * 2**0.5, 1e7], [2 + 2**0.5, 0.0]])
+
+
+def test_decimal_costs_make_no_twins():
+    field = np.zeros((4, 5))
+    field[0, 2], field[3, 1:4] = 0.3, 0.1
+    occupied = np.zeros((4, 5))
+    occupied[1:3, 1:4] = 1
+    problem = GridPathProblem(OccupancyGrid(occupied), (0, 1), (4, 1), "cells", ["length", Cost("toll", field)])
+    np.testing.assert_array_equal(problem.pareto_front(), [[6.0, 0.3]])
+
+
+def test_costs_too_far_apart_are_refused():
+    field = np.ones((5, 5))
+    field[2, 2] = 1e20
+    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "cells", ["length", Cost("wall", field)])
+    with pytest.raises(CapabilityError, match="from 1 to 1e\\+20, too far apart"):
+        exact_front(problem)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_third_objective_equal_to_the_second_changes_nothing(seed):
+    """Two searches that share no pruning agree, on grids too large to enumerate."""
+    random_state = np.random.default_rng(seed)
+    size = int(random_state.integers(8, 25))
+    grid = random_grid(size, seed)
+    values = [np.zeros(grid.shape), random_state.integers(0, 4, size=grid.shape), random_state.random(grid.shape)][seed % 3]
+    cost, again, goal = Cost("cost", values), Cost("again", values), (size - 1, size - 1)
+    for first in ("length", Cost("other", random_state.integers(0, 9, size=grid.shape))):
+        two = GridPathProblem(grid, (0, 0), goal, "cells", [first, cost]).pareto_front()
+        three = GridPathProblem(grid, (0, 0), goal, "cells", [first, cost, again]).pareto_front()
+        np.testing.assert_allclose(two, three[:, :2], rtol=1e-12)
+
+
+def test_the_default_room_of_cells_holds_the_front_of_a_cost_of_ones_own():
+    """A field whose cheapest path winds through the whole grid."""
+    field = np.full((12, 12), 50)
+    field[::4] = field[2::4] = 0
+    field[1::4, -1] = field[3::4, 0] = 0
+    problem = GridPathProblem(OccupancyGrid(np.zeros((12, 12))), (0, 0), (11, 11), "cells", ["length", Cost("wet", field)])
+    assert problem.pareto_front()[-1, 0] > 50
+
+
+def test_a_limit_that_no_path_keeps():
+    problem = GridPathProblem(random_grid(10, 1), (0, 0), (9, 9), obstacles="limit", potential_limit=1e-12)
+    result = minimize(problem, ExactFront())
+    assert result.F is None
+    assert result.message == "no legal path keeps the potential limit of 1e-12"
+
+
+def test_arguments_are_checked():
+    with pytest.raises(CapabilityError, match="takes no argument 'seconds'"):
+        ExactFront(seconds=3)
+    for value in (-1, float("nan"), "1G"):
+        with pytest.raises(GridPathError, match="expected a number, zero or more"):
+            ExactFront(max_memory=value)
+
+
+def test_whatever_the_budget_both_ends_of_a_front_of_two_are_found():
+    problem = GridPathProblem(random_grid(60, 2), (0, 0), (59, 59), "cells")
+    found = exact_front(problem, Budget(max_seconds=0.0))
+    front = problem.pareto_front()
+    np.testing.assert_array_equal(found.F[[0, -1]], front[[0, -1]])
+    assert not found.complete
 
 
 SCRIPT = """

@@ -126,3 +126,36 @@ def test_selection_returns_indices_of_the_population():
     pop.set("rank", 0, "crowding", 1.0)
     chosen = SmoothnessTournament().do(None, pop, 10, 2, to_pop=False, random_state=np.random.default_rng(0))
     assert chosen.shape == (10, 2) and chosen.min() >= 0 and chosen.max() < 30
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(5, 30))
+def test_distinct_points_survive_before_further_paths_to_the_same(seed, n_survive):
+    rng = np.random.default_rng(seed)
+    pop = population(rng)
+    F, turn = pop.get("F"), pop.get("turn")
+    front = [k for k in range(30) if not any((F[j] <= F[k]).all() and (F[j] < F[k]).any() for j in range(30))]
+    points = {tuple(F[k]) for k in front}
+    survivors = RankAndSmoothness(distinct=True).do(Unconstrained(), pop, n_survive=n_survive, random_state=rng)
+    kept = [tuple(f) for f in survivors.get("F")]
+    # The ends of the front come first, and points before repetitions of points.
+    ends = {min(points), min(points, key=lambda f: f[::-1])}
+    assert ends <= set(kept)
+    n_first = len([f for f in kept if f in points])
+    assert len(points & set(kept)) == min(len(points), n_first)
+    # Of paths to one point the smoothest is among them.
+    for point in points & set(kept):
+        here = [individual.get("turn") for individual in survivors if tuple(individual.F) == point]
+        assert min(here) == min(turn[k] for k in front if tuple(F[k]) == point)
+
+
+def test_path_aware_operators_come_with_distinct_points():
+    from pymoo_gridpath import GridPathProblem
+    from pymoo_gridpath.algorithms import make_algorithm
+    from pymoo_gridpath.operators import path_operators
+    from pymoo_gridpath.problems import random_dense_grid
+
+    problem = GridPathProblem(random_dense_grid(8, 0.2, 1), (0, 0), (7, 7))
+    assert not make_algorithm("NSGA2", problem).survival.distinct
+    assert make_algorithm("NSGA2", problem, operators=path_operators(problem)).survival.distinct
+    own = RankAndSmoothness()
+    assert make_algorithm("NSGA2", problem, operators=path_operators(problem), survival=own).survival.distinct is False
