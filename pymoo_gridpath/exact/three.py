@@ -144,16 +144,22 @@ def before(a, i, first, second, third):
 
 
 @kernel
+def move(heap, source, target):
+    """Copy an entry of a heap."""
+    for k in range(4):
+        heap[target, k] = heap[source, k]
+
+
+@kernel
 def push(heap, n, first, second, third, load):
     """Add an entry to the ``n`` that a heap of three keys holds."""
     i = n
     while i > 0:
         up = (i - 1) >> 1
-        if not before(heap, up, first, second, third):
-            heap[i] = heap[up]
-            i = up
-        else:
+        if before(heap, up, first, second, third):
             break
+        move(heap, up, i)
+        i = up
     heap[i, 0] = first
     heap[i, 1] = second
     heap[i, 2] = third
@@ -174,7 +180,7 @@ def drop_first(heap, n):
             down += 1
         if not before(heap, down, first, second, third):
             break
-        heap[i] = heap[down]
+        move(heap, down, i)
         i = down
     heap[i, 0] = first
     heap[i, 1] = second

@@ -68,7 +68,7 @@ def direct_headings() -> np.ndarray:
     return np.array([[known.get((int(dx), int(dy)), -1) for dx, dy in row] for row in sums], dtype=np.int64)
 
 
-def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, n_weights: int = 16) -> Front:
+def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, n_weights: int = 24) -> Front:
     """Return the exact front of two objectives.
 
     Parameters
@@ -79,7 +79,7 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     start, goal : int
     meter : Meter
         Ends the search when a budget is used up; the best paths found by then are returned.
-    n_weights : int, default 16
+    n_weights : int, default 24
         See `supported_points`.
 
     References
@@ -243,10 +243,10 @@ def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
 
 
 @kernel
-def promising(f1, f2, g1, g2, weighted, column, weights, ceilings, marks, gap):
+def promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, gap):
     """Whether a label can end below the staircase of known points in one of the gaps from ``gap`` on."""
     for j in range(gap, len(weights)):
-        total = weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[column[j]]
+        total = weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[state, column[j]]
         if f1 < marks[j, 0] and f2 < marks[j, 1] and total < ceilings[j]:
             return True
     return False
@@ -367,7 +367,7 @@ def search_two(
         g1 = f1 - states[state, BOUND1]
         if counts[NEXT_CORNER] < len(corners) and corners[counts[NEXT_CORNER], 0] <= f1:
             lower_marks(corners, weights, ceilings, marks, counts, f1)
-        if not promising(f1, f2, g1, g2, weighted[state], column, weights, ceilings, marks, counts[GAP]):
+        if not promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, counts[GAP]):
             continue
         if with_heading:
             # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
@@ -408,7 +408,8 @@ def search_two(
             next_f1 = next1 + states[next_state, BOUND1]
             if next_f1 >= 2**61:
                 continue
-            if promising(next_f1, next_f2, next1, next2, weighted[next_state], column, weights, ceilings, marks, counts[GAP]):
+            gap = counts[GAP]
+            if promising(next_f1, next_f2, next1, next2, next_state, weighted, column, weights, ceilings, marks, gap):
                 push(heap, n, next_f1, next_f2, (8 * next_cell + m) << 32 | n_closed)
                 n += 1
         n_closed += 1

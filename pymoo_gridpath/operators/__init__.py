@@ -23,7 +23,7 @@ from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.operators.selection import SmoothnessTournament
 from pymoo_gridpath.operators.splice import SpliceCrossover
 from pymoo_gridpath.operators.survival import RankAndSmoothness
-from pymoo_gridpath.operators.terrain import terrain_of
+from pymoo_gridpath.operators.terrain import representation_of, terrain_of
 from pymoo_gridpath.representations import MonotoneRepresentation
 
 __all__ = [
@@ -75,13 +75,13 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
     Raises
     ------
     GridPathError
-        If the representation is not one of the paper's.
+        If the representation is not one of the paper's, or the problem has none.
 
     References
     ----------
     Ahmed and Deb (2013), sections 2.1 to 2.3 and 5.2.
     """
-    representation = problem.representation
+    representation = representation_of(problem)
     if not isinstance(representation, MonotoneRepresentation):
         raise GridPathError(
             f"the paper names no operators for the {representation.name} representation, expected one of its own codings; "
@@ -138,6 +138,12 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
 
 
 def default_operators(problem) -> dict:
-    """Return `paper_operators` for the paper's representations, and `path_operators` for any other, such as "cells"."""
-    of_the_paper = isinstance(problem.representation, MonotoneRepresentation)
+    """Return `paper_operators` for the paper's representations, and `path_operators` for any other, such as "cells".
+
+    Raises
+    ------
+    GridPathError
+        If the problem has no path representation.
+    """
+    of_the_paper = isinstance(representation_of(problem), MonotoneRepresentation)
     return paper_operators(problem) if of_the_paper else path_operators(problem)

@@ -19,9 +19,9 @@ class PathRepair(Repair):
     def _do(self, problem, X, random_state=None, **kwargs):
         representation, terrain = problem.representation, terrain_of(problem)
         X = representation.repair(X, random_state)
-        paths = representation.to_sequences(X)
-        broken = ~are_legal(paths, terrain)
+        broken = ~are_legal(representation.to_sequences(X), terrain)
         if broken.any():
+            paths = representation.to_sequences(X[broken])
             mended = mend(paths, representation.moves, terrain.start, terrain.goal, max_cells(problem))
-            X[broken] = representation.from_sequences(mended)[broken]
+            X[broken] = representation.from_sequences(mended)
         return X

@@ -10,9 +10,17 @@ from pymoo_gridpath.operators.duplicates import row_keys
 from pymoo_gridpath.operators.parameters import in_range
 from pymoo_gridpath.operators.terrain import max_cells, objective_terms, random_weights, terrain_of, whole_weights
 from pymoo_gridpath.search.sampling import cheapest_paths, paths_through
+from pymoo_gridpath.search.terrain import FULL_WEIGHT, steps_through
+from pymoo_gridpath.search.vary import REROUTE, Changes, vary
 
 # Cells that all random trees of a population may visit together: more than there are samples on small grids, few on large ones.
 TREE_CELLS = 4_000_000
+
+# Cells that all searches for scalarised paths may visit together, and how many searches there may be however large the grid.
+SEARCH_CELLS, LEAST_SEARCHES = 8_000_000, 16
+
+# How far around a stretch that is to change, and how long, another way is looked for.
+REROUTE_MARGIN, REROUTE_LIMIT = 16, 20_000
 
 # The roughest blocks of equal noise have 2**3 cells a side.
 LARGEST_BLOCK = 3
@@ -26,7 +34,8 @@ class ReachableSampling(Sampling):
 
     Each path leads from the start to a random cell, and from there to the goal, by branches of two random trees of cheapest
     routes. On small grids each path has trees of its own; on large ones paths share a few, so that a population costs no
-    more than some searches of the whole grid. No path meets an obstacle, however narrow the way.
+    more than some searches of the whole grid. No path meets an obstacle, however narrow the way. Paths that equal another
+    or are too long for the representation are drawn again a few times, ever closer to shortest ones.
 
     Parameters
     ----------
@@ -43,16 +52,41 @@ class ReachableSampling(Sampling):
 
     def _do(self, problem, n_samples, *args, random_state=None, **kwargs):
         assert random_state is not None
-        terrain = terrain_of(problem)
+        points = self._points(problem)
+        X = self._draw(problem, points, n_samples, 0, random_state)
+        for k in range(1, ROUNDS + 1):
+            # Those that were too long have all become the shortest path.
+            again = _repeated(X)
+            if len(again) == 0:
+                break
+            X[again] = self._draw(problem, points, len(again), k, random_state)
+            if k > 1 and len(_repeated(X)) == len(again):
+                break
+        return X
+
+    def _points(self, problem) -> np.ndarray:
+        """Return the cells through which a path may be drawn."""
+        terrain, moves, most = terrain_of(problem), problem.representation.moves, max_cells(problem)
         bounds = terrain.bounds[:, 0] + terrain.bounds[:, 1]
-        points = np.flatnonzero(terrain.useful & (bounds <= (1.0 + self.detour) * bounds[terrain.start]))
-        n_trees = int(np.clip(TREE_CELLS // (2 * len(terrain.legal)), 4, n_samples))
+        fit = terrain.useful & (bounds <= (1.0 + self.detour) * bounds[terrain.start])
+        if most < moves.n_cells:
+            close = fit & (steps_through(moves, terrain.start, terrain.goal) < most)
+            fit = close if close.any() else fit
+        return np.flatnonzero(fit)
+
+    def _draw(self, problem, points: np.ndarray, n: int, k: int, random_state) -> np.ndarray:
+        """Return the genes of n paths, the nearer to shortest ones the greater k."""
+        terrain = terrain_of(problem)
+        n_trees = int(np.clip(TREE_CELLS // (2 * len(terrain.legal)), 4, n))
+        weights = random_weights(problem, n_trees, random_state)
+        if k > 1:
+            weights[:, 0], weights[:, 1:] = FULL_WEIGHT, 1
         paths = paths_through(
             terrain,
-            points=random_state.choice(points, n_samples),
-            trees=random_state.integers(0, n_trees, (n_samples, 2)),
-            weights=random_weights(problem, n_trees, random_state),
-            noise=noise_of(self.roughness, n_trees, random_state),
+            points=random_state.choice(points, n),
+            trees=random_state.integers(0, n_trees, (n, 2)),
+            weights=weights,
+            noise=noise_of(self.roughness / 4**k, n_trees, random_state),
             max_cells=max_cells(problem),
         )
         return problem.representation.from_sequences(paths)
@@ -62,7 +96,9 @@ class ScalarizedSampling(Sampling):
     """Take the cheapest paths for weights that are spread evenly over the objectives, each scaled by its range.
 
     The objectives that can be weighted so are those that add up along a path: the length and all that have a field. Where
-    different weights have the same cheapest path, further ones are replaced by cheapest paths under random costs.
+    different weights have the same cheapest path, further ones are replaced by cheapest paths under random costs. On large
+    grids there are fewer weights, and the further paths differ from cheapest ones in a stretch only, so that a population
+    costs no more than some searches of the whole grid.
 
     Parameters
     ----------
@@ -78,16 +114,45 @@ class ScalarizedSampling(Sampling):
     def _do(self, problem, n_samples, *args, random_state=None, **kwargs):
         assert random_state is not None
         terrain, most = terrain_of(problem), max_cells(problem)
-        weights = spread_weights(problem, n_samples, random_state)
-        encode = problem.representation.from_sequences
-        X = encode(cheapest_paths(terrain, weights, np.zeros((n_samples, 3), dtype=np.int64), most))
+        searches = max(SEARCH_CELLS // len(terrain.legal), LEAST_SEARCHES)
+        spread = spread_weights(problem, min(n_samples, searches), random_state)
+        distinct, which = np.unique(spread, axis=0, return_inverse=True)
+        cheapest = cheapest_paths(terrain, distinct, np.zeros((len(distinct), 3), dtype=np.int64), most)
+        searches -= len(distinct)
+        rows = np.arange(n_samples) % len(spread)
+        weights, X = spread[rows], problem.representation.from_sequences(cheapest)[which.ravel()[rows]]
         for k in range(ROUNDS):
             again = _repeated(X)
             if self.noise == 0 or len(again) == 0:
                 break
             noise = noise_of(self.noise * (1 + k / 2), len(again), random_state)
-            X[again] = encode(cheapest_paths(terrain, weights[again], noise, most))
+            n = min(searches, len(again))
+            searches -= n
+            anew, changed = again[:n], again[n:]
+            X[anew] = problem.representation.from_sequences(cheapest_paths(terrain, weights[anew], noise[:n], most))
+            if len(changed):
+                # The weights of other paths mix two cheapest paths; noise only where that brings nothing new.
+                noise[:, 0] *= k > 0
+                X[changed] = _rerouted(problem, X[changed], random_state.permutation(weights)[changed], noise[n:], random_state)
         return X
+
+
+def _rerouted(problem, X: np.ndarray, weights: np.ndarray, noise: np.ndarray, random_state) -> np.ndarray:
+    """Return the genes of paths with a random stretch replaced by the cheapest route under random costs."""
+    paths = problem.representation.to_sequences(X)
+    begin, end = random_stretches(paths.lengths, random_state)
+    way = np.full(len(X), REROUTE)
+    changes = Changes(way, begin, end, way, weights, noise)
+    changed = vary(terrain_of(problem), paths, changes, REROUTE_MARGIN, REROUTE_LIMIT, max_cells(problem))
+    return problem.representation.from_sequences(changed)
+
+
+def random_stretches(lengths: np.ndarray, random_state) -> tuple[np.ndarray, np.ndarray]:
+    """Return the positions of the two ends of a stretch of each path; the logarithm of the number of steps is uniform."""
+    n = len(lengths)
+    stretch = np.minimum(np.exp(random_state.random(n) * np.log(lengths)).astype(np.int64), lengths - 1)
+    begin = (random_state.random(n) * (lengths - stretch)).astype(np.int64)
+    return begin, begin + stretch
 
 
 def spread_weights(problem, n: int, random_state) -> np.ndarray:

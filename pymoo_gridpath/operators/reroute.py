@@ -7,7 +7,7 @@ from pymoo.core.mutation import Mutation
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.parameters import in_range
-from pymoo_gridpath.operators.path_sampling import noise_of
+from pymoo_gridpath.operators.path_sampling import noise_of, random_stretches
 from pymoo_gridpath.operators.terrain import max_cells, paths_of, random_weights, terrain_of
 from pymoo_gridpath.search.terrain import FULL_WEIGHT
 from pymoo_gridpath.search.vary import REROUTE, SHIFT, STRAIGHTEN, Changes, vary
@@ -66,16 +66,14 @@ class PathMutation(Mutation):
     def _draw(self, problem, lengths: np.ndarray, random_state) -> Changes:
         n = len(lengths)
         way = np.searchsorted(np.cumsum(self.shares)[:-1], random_state.random(n), side="right")
-        # The logarithm of the number of steps is uniform.
-        stretch = np.minimum(np.exp(random_state.random(n) * np.log(lengths)).astype(np.int64), lengths - 1)
-        begin = (random_state.random(n) * (lengths - stretch)).astype(np.int64)
+        begin, end = random_stretches(lengths, random_state)
         weights = random_weights(problem, n, random_state)
         weights[way == _SHORTCUT] = 1
         weights[way == _SHORTCUT, 0] = FULL_WEIGHT
         noise = noise_of(1.0, n, random_state)
         noise[:, 0] = np.where(way == _RANDOM, noise[:, 0] * random_state.integers(1, 4, n), 0)
         kind = np.select([way == _STRAIGHTEN, way == _SHIFT], [STRAIGHTEN, SHIFT], REROUTE)
-        return Changes(kind, begin, begin + stretch, random_state.integers(0, 8, n), weights, noise)
+        return Changes(kind, begin, end, random_state.integers(0, 8, n), weights, noise)
 
 
 _RANDOM, _SHORTCUT, _STRAIGHTEN, _SHIFT = (list(WAYS).index(way) for way in ("random", "shortcut", "straighten", "shift"))

@@ -29,10 +29,10 @@ class RankAndSmoothness(ArraySurvival):
     Parameters
     ----------
     distinct : bool, default False
-        Whether points of the front go before further paths to the same points. Operators that make legal paths only, such as
-        `path_operators`, soon fill the population with paths of equal objectives, and smooth ones of them would push out other
-        points. If True, of paths with equal objectives all but the smoothest come after all other paths of their front,
-        with a crowding distance of 0, and the ends of the front come before all others.
+        Whether turn decides only between paths of equal objectives. Operators that make legal paths only, such as
+        `path_operators`, soon fill the population with non-dominated paths, and those that turn little would push out the
+        others, ends of the front included. If True, of paths with equal objectives all but the smoothest come after all other
+        paths of their front, with a crowding distance of 0, and among the others the crowding distance decides before turn.
 
     References
     ----------
@@ -55,7 +55,7 @@ class RankAndSmoothness(ArraySurvival):
             repeat = repeats(F, turn)
             crowding = np.zeros(len(pop))
             crowding[~repeat] = crowding_distances(F[~repeat], rank[~repeat])
-            survivors = np.lexsort((-crowding, turn, np.isfinite(crowding), repeat, rank))[:n_survive]
+            survivors = np.lexsort((turn, -crowding, repeat, rank))[:n_survive]
         else:
             crowding = crowding_distances(F, rank)
             survivors = np.lexsort((-crowding, turn, rank))[:n_survive]

@@ -8,6 +8,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Length
+from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.search.sequences import Sequences, are_legal, mend
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
 
@@ -16,6 +17,20 @@ _TERRAINS: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
 
 # Weight of the length where it is no objective: of ways that cost the same, the shorter.
 LEAST_WEIGHT = FULL_WEIGHT // 64
+
+
+def representation_of(problem) -> Representation:
+    """Return the representation of a problem.
+
+    Raises
+    ------
+    GridPathError
+        If it has none.
+    """
+    representation = getattr(problem, "representation", None)
+    if representation is None:
+        raise GridPathError(f"the operators need a GridPathProblem, got {type(problem).__name__}")
+    return representation
 
 
 def terrain_of(problem) -> Terrain:
@@ -27,9 +42,7 @@ def terrain_of(problem) -> Terrain:
         If the problem has no path representation.
     """
     if problem not in _TERRAINS:
-        representation = getattr(problem, "representation", None)
-        if representation is None:
-            raise GridPathError(f"path-aware operators need a GridPathProblem, got {type(problem).__name__}")
+        representation = representation_of(problem)
         fields = [objective.field(problem.grid) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)

@@ -26,8 +26,8 @@ class Work(NamedTuple):
 
     Attributes
     ----------
-    run : numpy.ndarray of int64, shape (1,)
-        Number of the search that is on.
+    run : numpy.ndarray of int64, shape (2,)
+        Number of the search that is on, and of the cells that it has expanded.
     stamp : numpy.ndarray of int64, shape (n_cells,)
         The last search that reached each cell; the other arrays hold for cells of the search that is on.
     cost : numpy.ndarray of int64, shape (n_cells,)
@@ -52,7 +52,7 @@ def make_work(terrain: Terrain) -> Work:
     n = len(terrain.legal)
     cost, came, place = np.empty((3, n), dtype=np.int64)
     return Work(
-        np.zeros(1, dtype=np.int64), np.zeros(n, dtype=np.int64), cost, came, place, np.empty((4096, 3), dtype=np.int64)
+        np.zeros(2, dtype=np.int64), np.zeros(n, dtype=np.int64), cost, came, place, np.empty((4096, 3), dtype=np.int64)
     )
 
 
@@ -88,13 +88,13 @@ def find_route(terrain, work, source, target, weight, noise, margin, limit):
     straight, diagonal = weight[0] * terrain.straight, weight[0] * terrain.diagonal
     work.run[0] += 1
     run = work.run[0]
+    work.run[1] = 0
     heap = work.heap
     work.stamp[source] = run
     work.cost[source] = 0
     ahead = least_rest(terrain, weight, source, target, abs(tx - x), abs(ty - y))
     push(heap, 0, ahead, ahead, source)
     n = 1
-    expanded = 0
     while n > 0:
         reached = heap[0, 0] - heap[0, 1]
         cell = heap[0, 2]
@@ -104,8 +104,8 @@ def find_route(terrain, work, source, target, weight, noise, margin, limit):
             continue
         if cell == target:
             return True
-        expanded += 1
-        if expanded > limit:
+        work.run[1] += 1
+        if work.run[1] > limit:
             return False
         if n + 8 > len(heap):
             heap = grown(heap)
@@ -188,17 +188,23 @@ def descend(terrain, path, n):
     """Append a shortest route from the last of the ``n`` cells of a path to the goal; return both anew."""
     cell = path[n - 1]
     while cell != terrain.goal:
-        for m in range(8):
-            if (terrain.legal[cell] >> m) & 1:
-                step = terrain.straight if m & 1 == 0 else terrain.diagonal
-                other = cell + terrain.offsets[m]
-                if terrain.bounds[other, 0] + step == terrain.bounds[cell, 0]:
-                    cell = other
-                    break
+        cell = downhill(terrain, cell)
         path = room(path, n + 1)
         path[n] = cell
         n += 1
     return path, n
+
+
+@kernel
+def downhill(terrain, cell):
+    """Return the next cell on a shortest route to the goal."""
+    for m in range(8):
+        if (terrain.legal[cell] >> m) & 1:
+            step = terrain.straight if m & 1 == 0 else terrain.diagonal
+            other = cell + terrain.offsets[m]
+            if terrain.bounds[other, 0] + step == terrain.bounds[cell, 0]:
+                return other
+    return terrain.goal
 
 
 @kernel

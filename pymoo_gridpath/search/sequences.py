@@ -8,12 +8,15 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import descend, find_route, make_work, room, unwind
+from pymoo_gridpath.search.route import descend, downhill, find_route, make_work, room, unwind
 from pymoo_gridpath.search.shortest import UNREACHABLE
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, plain_terrain
 
 # How far around the two ends of a broken stretch, and how long, a way to join them is looked for.
 JOIN_MARGIN, JOIN_LIMIT = np.int64(8), np.int64(4096)
+
+# How many cells all these searches may expand for one path.
+MEND_LIMIT = np.int64(16384)
 
 
 class Sequences(NamedTuple):
@@ -56,7 +59,8 @@ def mend(sequences: Sequences, moves: Moves, start: int, goal: int, max_cells: i
     """Return legal paths that keep to sequences of cells as far as these can be followed.
 
     Cells that no path from the start to the goal visits are dropped, what is then broken is joined by shortest routes, a cell
-    that cannot be reached from the ones before it nearby is left out, and loops are cut.
+    that cannot be reached from the ones before it nearby is left out, and loops are cut. So are cells left out from which the
+    goal is too far for a path of ``max_cells`` cells, and all that come after so long a search that it is given up.
 
     Parameters
     ----------
@@ -66,7 +70,7 @@ def mend(sequences: Sequences, moves: Moves, start: int, goal: int, max_cells: i
     start, goal : int
         Indices of two cells that a path joins.
     max_cells : int, optional
-        A path of more cells is replaced by the shortest.
+        No path has more cells, unless the shortest has.
 
     Returns
     -------
@@ -132,33 +136,61 @@ def append_without_loops(path, length, place, out, n):
 def _mend(terrain, work, cells, offsets, max_cells):
     out, ends = np.empty(len(cells) + 1, dtype=np.int64), np.zeros(len(offsets), dtype=np.int64)
     path = np.empty(1024, dtype=np.int64)
+    left = np.zeros(len(terrain.legal), dtype=np.int64)
     total = 0
     for i in range(len(offsets) - 1):
-        path, n = _follow(terrain, work, cells[offsets[i] : offsets[i + 1]], path)
+        path, n = _follow(terrain, work, cells[offsets[i] : offsets[i + 1]], left, max_cells, path)
         out, total = append_without_loops(path, n, work.place, out, total)
-        if total - ends[i] > max_cells:
-            path, n = descend(terrain, path, 1)
-            out, total = append_without_loops(path, n, work.place, out, ends[i])
         ends[i + 1] = total
     return out[:total].copy(), ends
 
 
 @kernel
-def _follow(terrain, work, cells, path):
+def _follow(terrain, work, cells, left, max_cells, path):
     """Write the path from the start to the goal that follows cells as far as they can be; return it and its length."""
+    width = terrain.width
     weight = np.zeros(terrain.fields.shape[1] + 1, dtype=np.int64)
     weight[0] = FULL_WEIGHT
     noise = np.zeros(3, dtype=np.int64)
     path[0] = terrain.start
     n = 1
+    budget = MEND_LIMIT
     for cell in cells:
         last = path[n - 1]
         if cell == last or cell < 0 or cell >= len(terrain.legal) or terrain.bounds[cell, 0] >= UNREACHABLE:
+            continue
+        # What is left of the room when the path goes on from the cell to the goal, for the way to the cell.
+        room_left = max_cells - n - _steps_left(terrain, left, cell)
+        if max(abs(cell % width - last % width), abs(cell // width - last // width)) > room_left:
             continue
         if heading_between(terrain, last, cell) >= 0:
             path = room(path, n + 1)
             path[n] = cell
             n += 1
-        elif find_route(terrain, work, last, cell, weight, noise, JOIN_MARGIN, JOIN_LIMIT):
-            path, n = unwind(terrain, work, last, cell, path, n)
+            continue
+        if budget <= 0:
+            break
+        found = find_route(terrain, work, last, cell, weight, noise, JOIN_MARGIN, min(JOIN_LIMIT, budget))
+        budget -= work.run[1]
+        if found:
+            path, longer = unwind(terrain, work, last, cell, path, n)
+            if longer - n <= room_left:
+                n = longer
     return descend(terrain, path, n)
+
+
+@kernel
+def _steps_left(terrain, left, cell):
+    """Return the number of steps that `descend` takes from a cell; ``left`` holds those known already, 0 for unknown."""
+    steps = 0
+    other = cell
+    while other != terrain.goal and left[other] == 0:
+        other = downhill(terrain, other)
+        steps += 1
+    steps += left[other]
+    other, known = cell, steps
+    while other != terrain.goal and left[other] == 0:
+        left[other] = known
+        known -= 1
+        other = downhill(terrain, other)
+    return steps

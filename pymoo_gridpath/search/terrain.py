@@ -23,6 +23,12 @@ LARGEST_COST = 2**26
 # A term that varies less than this over the extreme paths, relative to its least value, is scaled as if it varied as much.
 LEAST_RANGE = 1e-3
 
+# A cost that is so many times all lesser ones together, over all cells, stands for a prohibition.
+PROHIBITIVE = 100.0
+
+# Lesser costs that add up to less than this, relative to the largest one, are but the tail of a steep field.
+LEAST_TAIL = 1e-30
+
 
 class Terrain(NamedTuple):
     """The legal steps between a start and a goal, and what they cost in K terms: the length and K - 1 fields.
@@ -88,7 +94,9 @@ def make_terrain(moves: Moves, start: int, goal: int, fields: Sequence[np.ndarra
     start, goal : int
         Indices of two cells that a path joins.
     fields : sequence of numpy.ndarray, each of n_cells values
-        Cost of entering each cell. Negative costs count as none, since searches take no profit from a detour.
+        Cost of entering each cell. Where some of the cells that paths visit have negative costs, all are raised by the same
+        amount, such that the least is 0, since searches take no profit from a detour. Costs so large that they stand for a
+        prohibition are lowered to what the cheapest path of all costs, and those that are not finite are taken for such.
 
     Returns
     -------
@@ -96,9 +104,8 @@ def make_terrain(moves: Moves, start: int, goal: int, fields: Sequence[np.ndarra
     """
     back = copy.copy(moves)
     back.legal = _reversed(moves.legal, moves.offsets)
-    entered = (back.legal != 0) | (np.arange(moves.n_cells) == start)
-    costs = [np.where(~entered, 0.0, np.nan_to_num(np.ravel(field), posinf=0.0).clip(0.0)) for field in fields]
-    straight, fields_ = _scaled(moves, start, goal, costs)
+    visited = steps_through(moves, start, goal) < UNREACHABLE if len(fields) else np.empty(0)
+    straight, fields_ = _scaled(moves, start, goal, [_raised(np.ravel(field), visited) for field in fields])
     diagonal = round(SQRT2 * straight)
     bounds = np.empty((moves.n_cells, 2 * len(fields_) + 2), dtype=np.int64)
     for k, (step, field) in enumerate(_terms(straight, diagonal, fields_, moves.n_cells)):
@@ -114,25 +121,55 @@ def make_terrain(moves: Moves, start: int, goal: int, fields: Sequence[np.ndarra
     )
 
 
+def _raised(field: np.ndarray, visited: np.ndarray) -> np.ndarray:
+    """Return a field that is finite and not negative, and 0 in cells that no path visits."""
+    known = visited & np.isfinite(field)
+    cost = np.where(known, field, 0.0)
+    cost[known] -= min(cost[known].min(initial=0.0), 0.0)
+    # Not finite: more than all others together.
+    cost[visited & ~known] = 2 * PROHIBITIVE * cost.sum() or 1.0
+    return cost
+
+
+def _bounded(cost: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Return a field without costs that would leave nothing of the others when scaled, and whether there were any.
+
+    They become as large as all others together, so that no path is the better for meeting one.
+    """
+    values, counts = np.unique(cost[cost > 0.0], return_counts=True)
+    below = np.cumsum(values * counts)[:-1]
+    gaps = np.flatnonzero((values[1:] > PROHIBITIVE * below) & (below > LEAST_TAIL * values.max(initial=0.0)))
+    return (cost, False) if len(gaps) == 0 else (np.minimum(cost, below[gaps[0]]), True)
+
+
 def _scaled(moves: Moves, start: int, goal: int, costs: list[np.ndarray]) -> tuple[int, list[np.ndarray]]:
     """Return the cost of a straight step and the costs of cells as whole numbers of comparable ranges."""
+    bounded = [_bounded(cost) for cost in costs]
+    costs = [cost for cost, _ in bounded]
     # Each term's best path, found with every term on a coarse scale of its own.
-    peaks = [SQRT2, *(max(float(cost.max()), 1e-300) for cost in costs)]
-    coarse = [np.rint(cost * (2.0**20 / peak)).astype(np.int64) for cost, peak in zip(costs, peaks[1:], strict=True)]
+    coarse = [np.rint(cost * (2.0**20 / _peak(cost))).astype(np.int64) for cost in costs]
     straight, diagonal = 2**20, round(SQRT2 * 2**20)
-    totals = []
+    paths = []
     for step, field in _terms(straight, diagonal, coarse, moves.n_cells):
         # A trace of the length keeps the best path from wandering where it costs nothing.
-        cells = _best_path(moves, step + straight // 2**10, field, start, goal)
-        lengths = np.where(_is_diagonal(cells, moves.width), SQRT2, 1.0)
-        totals.append([lengths.sum(), *(cost[cells[1:]].sum() for cost in costs)])
-    totals = np.array(totals)
+        paths.append(_best_path(moves, step + straight // 2**10, field, start, goal))
+    for k, (cost, prohibits) in enumerate(bounded):
+        if prohibits:
+            # A cell as dear as a whole best path is avoided just as one that is dearer.
+            costs[k] = np.minimum(cost, cost[paths[k + 1][1:]].sum())
+    peaks = [SQRT2, *map(_peak, costs)]
+    lengths = [np.where(_is_diagonal(cells, moves.width), SQRT2, 1.0).sum() for cells in paths]
+    totals = np.column_stack([lengths, *([cost[cells[1:]].sum() for cells in paths] for cost in costs)])
     least, most = totals.min(axis=0), totals.max(axis=0)
     spans = np.maximum(most - least, LEAST_RANGE * np.maximum(most, np.array(peaks)))
     scale = LARGEST_COST / (np.array(peaks) / spans).max()
     return round(scale / spans[0]), [
         np.rint(cost * (scale / span)).astype(np.int64) for cost, span in zip(costs, spans[1:], strict=True)
     ]
+
+
+def _peak(cost: np.ndarray) -> float:
+    return max(float(cost.max()), 1e-300)
 
 
 def _terms(straight: int, diagonal: int, fields: list[np.ndarray], n_cells: int):
@@ -180,6 +217,14 @@ def _restricted(moves: Moves, useful: np.ndarray) -> np.ndarray:
         tails = tails[useful[tails + moves.offsets[m]]]
         legal[tails] |= np.uint8(1 << m)
     return legal
+
+
+def steps_through(moves: Moves, start: int, goal: int) -> np.ndarray:
+    """Return the fewest steps of a path from the start through each cell to the goal; `UNREACHABLE` or more for none."""
+    back = copy.copy(moves)
+    back.legal = _reversed(moves.legal, moves.offsets)
+    step, nothing = np.ones((9, 8), dtype=np.int64), np.zeros(moves.n_cells, dtype=np.int64)
+    return _least_costs(moves, step, nothing, goal) + _least_costs(back, step, nothing, start)
 
 
 def backwards(terrain: Terrain) -> Terrain:

@@ -26,11 +26,16 @@ from pymoo_gridpath.operators import (
     ScalarizedSampling,
     SpliceCrossover,
     default_operators,
+    paper_operators,
     path_operators,
+    path_sampling,
 )
 from pymoo_gridpath.operators.reroute import WAYS
 from pymoo_gridpath.operators.terrain import random_weights, terrain_of
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+from pymoo_gridpath.representations import CellSequence
+from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.sequences import Sequences, mend
 
 NAMES = ["integer", "binary", "mixed", "absolute", "cells"]
 
@@ -138,6 +143,37 @@ def test_objectives_that_do_not_add_up_are_left_out_of_the_weights(objectives, n
             assert len(X) == n and is_legal(problem, X)
 
 
+def test_random_samples_differ_however_tight_the_room():
+    grid = random_dense_grid(40, 0.1, 0)
+    least = len(mend(Sequences(np.zeros(0, dtype=np.int64), np.zeros(2, dtype=np.int64)), Moves(grid), 0, 1599).cells)
+    for room, n_distinct in ((0, 50), (2, 90), (10, 98)):
+        coding = CellSequence(grid, (0, 0), (39, 39), max_cells=least + room)
+        problem = GridPathProblem(grid, (0, 0), (39, 39), coding)
+        X = ReachableSampling().do(problem, 100, random_state=np.random.default_rng(0)).get("X")
+        assert is_legal(problem, X) and len(rows(X)) >= n_distinct
+
+
+def test_scalarised_searches_are_few(monkeypatch):
+    searched = []
+    cheapest_paths = path_sampling.cheapest_paths
+
+    def counted(terrain, weights, *args):
+        searched.append(len(weights))
+        return cheapest_paths(terrain, weights, *args)
+
+    monkeypatch.setattr(path_sampling, "cheapest_paths", counted)
+    problem = corner_to_corner("cells", 24, 0.1, objectives=("length",))
+    ScalarizedSampling(noise=0).do(problem, 30, random_state=np.random.default_rng(0))
+    assert searched == [1], "all weights are the same"
+    searched.clear()
+    monkeypatch.setattr(path_sampling, "SEARCH_CELLS", 0)
+    for name in ("cells", "integer"):
+        problem = corner_to_corner(name, 24, 0.1)
+        X = ScalarizedSampling().do(problem, 100, random_state=np.random.default_rng(0)).get("X")
+        assert is_legal(problem, X) and len(rows(X)) > 60
+    assert sum(searched) == 2 * path_sampling.LEAST_SEARCHES
+
+
 # -- crossover, mutation, repair ----------------------------------------------------------------------------------------
 
 
@@ -204,8 +240,6 @@ def test_each_way_of_mutation_does_what_it_says(way):
 
 def test_room_is_kept_to():
     grid = SPIRAL.replace(occupied=np.zeros((12, 12)))
-    from pymoo_gridpath.representations import CellSequence
-
     problem = GridPathProblem(grid, (0, 0), (11, 11), CellSequence(grid, (0, 0), (11, 11), max_cells=13))
     result = minimize(problem, NSGA2(pop_size=20, **path_operators(problem, "random")), ("n_gen", 10), seed=1)
     assert (result.pop.get("interfering_cells") == 0).all()
@@ -233,6 +267,8 @@ def test_arguments_out_of_range_are_refused():
         (lambda: ScalarizedSampling(noise=-1), "noise is -1"),
         (lambda: path_operators(problem, "best"), "sampling is 'best', expected 'scalarized' or 'random'"),
         (lambda: path_operators(Problem(n_var=2)), "need a GridPathProblem, got Problem"),
+        (lambda: paper_operators(Problem(n_var=2)), "need a GridPathProblem, got Problem"),
+        (lambda: default_operators(Problem(n_var=2)), "need a GridPathProblem, got Problem"),
     ]:
         with pytest.raises(GridPathError, match=message):
             make()

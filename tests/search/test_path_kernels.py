@@ -108,6 +108,32 @@ def test_mending_keeps_to_the_cells_that_can_be_reached():
     assert split(mend(joined([[7, 3, 0]]), moves, 0, 4)) == [[0, 1, 2, 3, 4]], "the way back to the start is a loop"
 
 
+def test_mending_ends_in_the_cheapest_way_where_the_room_does():
+    moves = Moves(SPIRAL.replace(occupied=np.zeros((20, 20))))
+    up_and_along = [20 * y for y in range(20)] + [380 + x for x in range(20)] + [399 - 20 * y for y in range(20)]
+    for most in (20, 22, 30, 45):
+        (path,) = split(mend(joined([up_and_along]), moves, 0, 19, most))
+        followed = int(np.argmin(np.array(path) == np.array(up_and_along[: len(path)])))
+        assert len(path) <= most
+        assert followed >= (most - 19) // 2 and path[followed - 1] == up_and_along[followed - 1]
+
+
+def test_mending_random_rows_is_bounded_and_keeps_them_apart():
+    rng = np.random.default_rng(0)
+    moves = Moves(SPIRAL.replace(occupied=rng.random((96, 96)) < 0.15))
+    cells = np.flatnonzero(plain_terrain(moves, *ends_of(moves)).useful)
+    rows = [rng.choice(cells, 160).tolist() for _ in range(20)]
+    mended = mend(joined(rows), moves, *ends_of(moves), 160)
+    check(mended, plain_terrain(moves, *ends_of(moves)))
+    assert mended.lengths.max() <= 160 and len(set(map(tuple, split(mended)))) == 20
+
+
+def ends_of(moves):
+    """Two free cells in opposite corners."""
+    free = np.flatnonzero(moves.legal)
+    return int(free[0]), int(free[-1])
+
+
 @settings(max_examples=60)
 @given(queries(density=0.25), names)
 def test_children_of_a_splice_are_made_of_their_parents(query, name):

@@ -10,11 +10,12 @@ from queries import SPIRAL, queries
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.route import NOWHERE, block_noise, find_route, least_rest, make_work, unwind
 from pymoo_gridpath.search.shortest import UNREACHABLE
-from pymoo_gridpath.search.terrain import LARGEST_COST, make_terrain, plain_terrain
+from pymoo_gridpath.search.terrain import LARGEST_COST, make_terrain, plain_terrain, steps_through
 
 EVERYWHERE = 10**6
 
@@ -90,6 +91,68 @@ def test_terms_have_comparable_ranges():
     small, large = (make_terrain(moves, *ends, [scale * field]) for scale in (1e-3, 1e3))
     assert small.straight == pytest.approx(large.straight, rel=1e-5)
     assert small.fields == pytest.approx(large.fields, rel=1e-5, abs=2)
+
+
+def banded(dear):
+    """A field of random costs with a band of dear cells up to one gap at the top, and its terrain."""
+    field = np.random.default_rng(0).random((40, 40))
+    field[:36, 18:20] = dear
+    moves = Moves(SPIRAL.replace(occupied=np.zeros((40, 40))))
+    return field, make_terrain(moves, 0, 39, [field])
+
+
+def test_prohibitive_costs_leave_the_others_their_range():
+    field, terrain = banded(1e12)
+    ordinary = field.ravel() < 1
+    assert len(np.unique(terrain.fields[ordinary, 0])) > 1400
+    # A dear cell still costs no less than the whole cheapest path, but not much more.
+    dear = terrain.fields[~ordinary, 0]
+    assert np.ptp(dear) == 0 and terrain.bounds[0, 2] <= dear[0] < 1.5 * terrain.bounds[0, 2]
+    with np.errstate(divide="ignore"):
+        ratio = terrain.fields[ordinary, 0] / field.ravel()[ordinary]
+    assert ratio == pytest.approx(ratio.mean(), rel=0.01)
+    for other in (1e6, 1e20, np.inf, np.nan):
+        assert banded(other)[1].fields == pytest.approx(terrain.fields, rel=1e-5, abs=2)
+
+
+def test_steep_fields_are_no_prohibitions():
+    occupied = np.zeros((30, 50), dtype=bool)
+    occupied[15, 25] = True
+    grid = SPIRAL.replace(occupied=occupied)
+    field = obstacle_potential(grid)
+    terrain = make_terrain(Moves(grid), 15 * 50, 15 * 50 + 49, [field])
+    dearest = terrain.fields[14 * 50 + 25, 0]
+    assert terrain.fields[14 * 50 + 24, 0] == pytest.approx(np.exp(-1) * dearest, rel=1e-3)
+
+
+def test_negative_costs_are_raised_by_the_least_of_the_cells_that_paths_visit():
+    occupied = np.zeros((5, 7), dtype=bool)
+    occupied[:, 5] = True
+    moves = Moves(SPIRAL.replace(occupied=occupied))
+    field = np.random.default_rng(1).random((5, 7))
+    below = field - 3.0
+    below[:, 5:] = -99.0, np.inf
+    below[2, 2] = -3.0
+    field[2, 2] = 0.0
+    for shifted in (below, np.where(occupied, np.nan, below)):
+        terrain, same = (make_terrain(moves, 0, 4, [values]) for values in (shifted, field))
+        useful = terrain.useful
+        assert terrain.fields[useful, 0].min() == 0
+        assert terrain.fields[useful] == pytest.approx(same.fields[useful], rel=1e-6, abs=2)
+
+
+@settings(max_examples=30)
+@given(queries(), st.sampled_from(["cells", "integer"]))
+def test_fewest_steps_through_cells(query, name):
+    grid, start, goal, axis, _ = query
+    moves = make_representation(name, grid, start, goal, "auto" if name == "cells" else axis).moves
+    terrain = plain_terrain(moves, moves.index(start), moves.index(goal))
+    graph = graph_of(terrain, [1])
+    graph.data[:] = 1.0
+    there, back = (csgraph.dijkstra(g, indices=i) for g, i in ((graph, terrain.start), (graph.T, terrain.goal)))
+    steps = steps_through(moves, terrain.start, terrain.goal)
+    assert np.array_equal(steps[terrain.useful], (there + back)[terrain.useful])
+    assert (steps[~terrain.useful] >= UNREACHABLE).all()
 
 
 @settings(max_examples=60)
