@@ -6,7 +6,7 @@ label is dominated), with three additions that leave the result as it is:
 - A label must be able to end below the staircase of paths that are known already. Between two neighbouring points of the
   hull, its cheapest weighted completion has to stay below the furthest corner of the staircase there (the second phase of the
   two-phase method).
-- Two passes with a tolerance find paths near the front first, which make the staircase fine.
+- Passes with a tolerance find paths near the front first, which make the staircase fine.
 - A step is skipped if the cell before led straight to its end: the detour is dominated.
 """
 
@@ -36,7 +36,12 @@ LEAST2, BOUND1, BOUND2, FIELD1, FIELD2 = range(5)
 _ROUNDING = 1e-12
 
 # The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
-_TOLERANCES = (0.005, 0.0005)
+# They ask the less the later they come; each pass costs less than it saves the next only where the front takes millions of labels.
+_TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.03, 0.01, 0.003, 0.001)
+_LARGE = 2**17
+
+# Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.
+_CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**13, 12, 32
 
 _POPS_AT_A_TIME = 2**18
 _GROWTH = 1.25
@@ -68,7 +73,7 @@ def direct_headings() -> np.ndarray:
     return np.array([[known.get((int(dx), int(dy)), -1) for dx, dy in row] for row in sums], dtype=np.int64)
 
 
-def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, n_weights: int = 24) -> Front:
+def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
     """Return the exact front of two objectives.
 
     Parameters
@@ -79,8 +84,6 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     start, goal : int
     meter : Meter
         Ends the search when a budget is used up; the best paths found by then are returned.
-    n_weights : int, default 24
-        See `supported_points`.
 
     References
     ----------
@@ -88,9 +91,11 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     algorithm", ICAPS 2020 (BOA*). E. L. Ulungu and J. Teghem, "The two phases method", Foundations of Computing and
     Decision Sciences 20(2), 1995.
     """
+    n_weights = min(max(moves.n_cells // _CELLS_PER_WEIGHT, _LEAST_WEIGHTS), _MOST_WEIGHTS)
     hull = supported_points(moves, costs, start, goal, n_weights, meter)
     known, found = hull.points, [Front(hull.paths, hull.points)]
-    for tolerance in (*_TOLERANCES, 0.0):
+    tolerances = _TOLERANCES_ON_LARGE if moves.n_cells > _LARGE else _TOLERANCES
+    for tolerance in (*tolerances, 0.0):
         if meter.message:
             break
         search = _Search(moves, costs, start, goal, hull, known)
@@ -246,8 +251,10 @@ def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
 def promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, gap):
     """Whether a label can end below the staircase of known points in one of the gaps from ``gap`` on."""
     for j in range(gap, len(weights)):
-        total = weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[state, column[j]]
-        if f1 < marks[j, 0] and f2 < marks[j, 1] and total < ceilings[j]:
+        if f2 >= marks[j, 1]:
+            # Nor does it stay below the corners of the gaps behind, which lie lower.
+            return False
+        if f1 < marks[j, 0] and weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[state, column[j]] < ceilings[j]:
             return True
     return False
 
@@ -334,6 +341,7 @@ def search_two(
     max_pops : int
     """
     n, n_closed = counts[N_OPEN], counts[N_CLOSED]
+    best2, gap = counts[BEST2], counts[GAP]
     slack = np.int64(tolerance * (min(counts[BEST2], most_f2) - least_f2))
     status = DONE
     pops = 0
@@ -356,7 +364,7 @@ def search_two(
         load = heap[0, 2]
         drop_first(heap, n)
         n -= 1
-        if f2 >= counts[BEST2]:
+        if f2 >= best2:
             continue
         heading = (load >> 32) & 7
         cell = load >> 35
@@ -367,7 +375,8 @@ def search_two(
         g1 = f1 - states[state, BOUND1]
         if counts[NEXT_CORNER] < len(corners) and corners[counts[NEXT_CORNER], 0] <= f1:
             lower_marks(corners, weights, ceilings, marks, counts, f1)
-        if not promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, counts[GAP]):
+            gap = counts[GAP]
+        if not promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, gap):
             continue
         if with_heading:
             # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
@@ -379,6 +388,7 @@ def search_two(
         closed[n_closed, 0] = cell
         closed[n_closed, 1] = load & 0xFFFFFFFF
         if cell == goal:
+            best2 = g2
             counts[BEST2] = g2
             slack = np.int64(tolerance * (g2 - least_f2))
             found[counts[N_FOUND], 0] = n_closed
@@ -387,11 +397,13 @@ def search_two(
             counts[N_FOUND] += 1
             n_closed += 1
             lower_marks(corners, weights, ceilings, marks, counts, f1)
+            gap = counts[GAP]
             continue
         from_before = legal[cell - offsets[heading]]
         before = heading if with_heading else 8
+        steps = legal[cell]
         for m in range(8):
-            if not (legal[cell] >> m) & 1:
+            if not (steps >> m) & 1:
                 continue
             straight = direct[heading, m]
             if straight == 8 or (straight >= 0 and (from_before >> straight) & 1):
@@ -402,13 +414,12 @@ def search_two(
             if next2 >= states[next_state, LEAST2] - slack:
                 continue
             next_f2 = next2 + states[next_state, BOUND2]
-            if next_f2 >= counts[BEST2]:
+            if next_f2 >= best2:
                 continue
             next1 = g1 + step[0, before, m] + states[next_state, FIELD1]
             next_f1 = next1 + states[next_state, BOUND1]
             if next_f1 >= 2**61:
                 continue
-            gap = counts[GAP]
             if promising(next_f1, next_f2, next1, next2, next_state, weighted, column, weights, ceilings, marks, gap):
                 push(heap, n, next_f1, next_f2, (8 * next_cell + m) << 32 | n_closed)
                 n += 1
