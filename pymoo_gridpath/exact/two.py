@@ -36,7 +36,7 @@ LEAST2, BOUND1, BOUND2, FIELD1, FIELD2 = range(5)
 _ROUNDING = 1e-12
 
 # The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
-# They ask the less the later they come; each pass costs less than it saves the next only where the front takes millions of labels.
+# They ask the less the later they come; several pay only on large grids.
 _TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.03, 0.01, 0.003, 0.001)
 _LARGE = 2**17
 
