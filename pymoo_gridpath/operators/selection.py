@@ -97,7 +97,7 @@ def compare(P: np.ndarray, value: np.ndarray) -> np.ndarray:
     """
     if value.dtype == object:
         # The infeasible carry no rank of this generation, and `decide` does not ask for it.
-        value = np.where(value == None, 0, value).astype(float)  # noqa: E711
+        value = np.array([0 if one is None else one for one in value], dtype=float)
     a, b = value[P[:, 0]], value[P[:, 1]]
     return (a > b).astype(int) - (a < b)
 
