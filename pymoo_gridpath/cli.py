@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import io
 import os
 import re
@@ -14,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pymoo_gridpath.compiled import COMPILED
+from pymoo_gridpath.compiled import COMPILED, on_compiling
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
@@ -25,6 +26,8 @@ DEFAULT_MAP = "warehouse"
 
 # Rows of the printed table; the files hold all paths.
 MAX_ROWS = 40
+
+COMPILING = "compiling the search for this machine, about 20 s the first time"
 
 EXIT_OK, EXIT_NO_PATH, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
 
@@ -217,7 +220,7 @@ def _plan(arguments) -> int:
         )
     if arguments.max_seconds is not None and not isinstance(algorithm, ExactFront):
         raise GridPathError(f"--max-seconds is for --algorithm exact, not for {name}; expected --generations instead")
-    if not COMPILED and (isinstance(algorithm, ExactFront) or problem.representation.name == "cells"):
+    if not COMPILED and _searches_in_kernels(problem, algorithm):
         print(
             "numba is not installed, so the search runs as plain Python, many times slower; pip install 'pymoo_gridpath[fast]'",
             file=sys.stderr,
@@ -329,6 +332,18 @@ def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:
     return inflated
 
 
+def _searches_in_kernels(problem, algorithm) -> bool:
+    """Return whether a search spends its time in kernels that numba compiles."""
+    from pymoo_gridpath.algorithms import ExactFront
+
+    return isinstance(algorithm, ExactFront) or problem.representation.name == "cells"
+
+
+def _say_that_it_compiles() -> None:
+    """Say why nothing happens yet, on a line of its own that takes the place of a progress line."""
+    print(("\r\x1b[K" if sys.stderr.isatty() else "") + COMPILING, file=sys.stderr)
+
+
 def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
     """Return the Results of the runs, with progress shown, ended early if Ctrl-C asks for it."""
     from pymoo_gridpath.algorithms import ExactFront, minimize_runs
@@ -342,7 +357,8 @@ def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
         progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
         return stop.requested
 
-    with Progress(arguments.runs, arguments.generations) as progress:
+    say = on_compiling(_say_that_it_compiles) if _searches_in_kernels(problem, algorithm) else contextlib.nullcontext()
+    with Progress(arguments.runs, arguments.generations) as progress, say:
         if isinstance(algorithm, ExactFront):
             algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)
             return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)

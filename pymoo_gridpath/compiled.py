@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TypeVar
 
 try:
@@ -33,3 +34,29 @@ def kernel(function: F) -> F:
         return numba.njit(cache=True, nogil=True)(function)  # pyright: ignore[reportReturnType]
     except RuntimeError:  # no folder to keep compiled code in
         return numba.njit(nogil=True)(function)  # pyright: ignore[reportReturnType]
+
+
+@contextlib.contextmanager
+def on_compiling(tell: Callable[[], None]) -> Iterator[None]:
+    """While open, call a function when numba begins to compile, the first time only.
+
+    Code that numba has kept from an earlier process is not compiled again, and without numba nothing is.
+    """
+    if numba is None:
+        yield
+        return
+    from numba.core import event
+
+    class First(event.Listener):
+        told = False
+
+        def on_start(self, event):
+            if not self.told:
+                self.told = True
+                tell()
+
+        def on_end(self, event):
+            pass
+
+    with event.install_listener("numba:compile", First()):
+        yield

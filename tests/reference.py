@@ -1,4 +1,4 @@
-"""Plain Python references: paths measured cell by cell, by definition, with no use of the package's arithmetic."""
+"""Plain Python references: paths measured cell by cell, by definition, with no use of the package's arithmetic; and fronts."""
 
 import itertools
 import math
@@ -88,3 +88,23 @@ def broken_cells(cells, grid):
         if long == short == 1 and not grid.corner_cutting:
             count += bool(grid.occupied[a[1], b[0]]) + bool(grid.occupied[b[1], a[0]])
     return count
+
+
+# -- fronts ---------------------------------------------------------------------------------------------------------------
+
+
+def dominates(a, b):
+    return all(x <= y for x, y in zip(a, b, strict=True)) and any(x < y for x, y in zip(a, b, strict=True))
+
+
+def legal_front(problem, X):
+    """Points of the front of the legal paths among genes, as the problem scores them, each with the least turn on it."""
+    paths = problem.decode(np.asarray(X))
+    legal = [k for k in range(len(X)) if interfering_cells(paths.cells(k).tolist(), problem.grid) == 0]
+    F = [tuple(row) for row in problem.score(paths).tolist()]
+    points = {F[k] for k in legal}
+    return {
+        point: min(turn(paths.cells(k).tolist()) for k in legal if F[k] == point)
+        for point in points
+        if not any(dominates(other, point) for other in points)
+    }

@@ -1,5 +1,6 @@
 """The command line as a user meets it: real processes, their output, files and exit codes."""
 
+import contextlib
 import csv
 import io
 import json
@@ -12,7 +13,8 @@ import time
 
 import pytest
 
-from pymoo_gridpath.cli import main
+from pymoo_gridpath import cli
+from pymoo_gridpath.cli import COMPILING, main
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.progress import Progress
 
@@ -22,6 +24,11 @@ FAST = ["--pop-size", "30", "--generations", "10"]
 def run(*arguments, cwd=None, **options):
     command = [sys.executable, "-m", "pymoo_gridpath.cli", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False, **options)
+
+
+def without_compiling(stderr):
+    """Standard error without the line of the first search after an installation."""
+    return stderr.removeprefix(f"{COMPILING}\n")
 
 
 @pytest.fixture
@@ -35,7 +42,7 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
     out = tmp_path / "out"
     done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "--seed", "4", "-o", out)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == "", "progress must be silent in a pipe"
+    assert without_compiling(done.stderr) == "", "progress must be silent in a pipe"
     assert "shortest" in done.stdout and "vulnerability" in done.stdout
     names = {"paths.csv", "paths.json", "map.png", "map.pdf", "front.png", "front.pdf", "convergence.png", "convergence.pdf"}
     assert {file.name for file in out.iterdir()} == names
@@ -137,6 +144,22 @@ def test_plan_with_one_objective(tmp_path, free_map):
 
 
 @pytest.mark.parametrize(
+    ("options", "said"),
+    [([], True), (["--algorithm", "exact", "--corner-cutting"], True), (["--representation", "integer"], False)],
+)
+def test_compiling_is_said_where_the_search_is_compiled(tmp_path, free_map, options, said, capsys, monkeypatch):
+    @contextlib.contextmanager
+    def compiling(tell):
+        tell()
+        yield
+
+    monkeypatch.setattr(cli, "on_compiling", compiling)
+    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "-o", tmp_path / "out", *options]
+    assert main([*map(str, arguments)]) == 0
+    assert capsys.readouterr().err == (f"{COMPILING}\n" if said else "")
+
+
+@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["plan", "nowhere.map"], "nowhere.map"),
@@ -233,7 +256,7 @@ def test_closed_pipe_is_no_error_and_loses_no_file(tmp_path, free_map, unbuffere
     plan = f"plan {free_map} --start 0,0 --goal 5,3 {' '.join(FAST)} -o {tmp_path / 'out'}"
     for command in (f"{program} maps | true", f"{program} {plan} | head -1"):
         done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False, env=environment)
-        assert done.stderr == ""
+        assert without_compiling(done.stderr) == ""
     assert (tmp_path / "out" / "paths.json").exists()
 
 

@@ -14,13 +14,11 @@ import numpy as np
 import pytest
 import reference
 from pymoo.algorithms.moo.nsga2 import NSGA2
-from pymoo.core.callback import CallbackCollection
 from pymoo.core.population import Population
 from pymoo.core.result import Result
 from pymoo.optimize import minimize
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
-from pymoo_gridpath.convergence import ConvergenceRecorder, common_reference_point
 from pymoo_gridpath.decision import NAMES, TradeOffSet, export, knee_point, load_json
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Objective, Vulnerability
@@ -54,27 +52,10 @@ def result_of(problem, X, opt=True):
     return result
 
 
-def dominates(a, b):
-    return all(x <= y for x, y in zip(a, b, strict=True)) and any(x < y for x, y in zip(a, b, strict=True))
-
-
-def front_by_definition(problem, X):
-    """Points of the legal front, each with the least turn of the paths on it."""
-    paths = problem.decode(np.asarray(X))
-    legal = [k for k in range(len(X)) if reference.interfering_cells(paths.cells(k).tolist(), problem.grid) == 0]
-    F = [tuple(row) for row in problem.score(paths).tolist()]
-    points = {F[k] for k in legal}
-    return {
-        point: min(reference.turn(paths.cells(k).tolist()) for k in legal if F[k] == point)
-        for point in points
-        if not any(dominates(other, point) for other in points)
-    }
-
-
 @pytest.fixture(scope="module")
 def results():
     problem = make_problem(12, 3)
-    return [run(problem, seed, callback=ConvergenceRecorder()) for seed in (1, 2, 3)]
+    return [run(problem, seed) for seed in (1, 2, 3)]
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +71,7 @@ def test_the_set_is_the_legal_front_with_the_smoothest_path_of_each_point(object
     problem = make_problem(objectives=objectives)
     X = draw(problem)
     trade_off = TradeOffSet.from_genes(problem, X)
-    expected = front_by_definition(problem, X)
+    expected = reference.legal_front(problem, X)
     assert trade_off.feasible
     assert len(trade_off) == len(expected)
     assert {tuple(f): turn for f, turn in zip(trade_off.F.tolist(), trade_off.measures["turn"], strict=True)} == expected
@@ -274,7 +255,7 @@ def test_the_potential_limit_decides_too():
 
 def test_runs_are_merged_into_one_front(results, trade_off):
     X = np.concatenate([result.opt.get("X") for result in results])
-    expected = front_by_definition(trade_off.problem, X)
+    expected = reference.legal_front(trade_off.problem, X)
     assert {tuple(f) for f in trade_off.F.tolist()} == set(expected)
     assert trade_off.meta["seed"] == [1, 2, 3]
     assert [entry["seed"] for entry in trade_off.meta["settings"]["runs"]] == [1, 2, 3]
@@ -525,45 +506,3 @@ def test_sets_can_be_pickled_and_copied(trade_off):
 def test_deciding_does_not_import_pyplot():
     code = "import sys, pymoo_gridpath.decision, pymoo_gridpath.convergence; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
-
-
-# -- convergence ------------------------------------------------------------------------------------------------------
-
-
-def test_the_recorder_sees_the_legal_paths_of_every_generation():
-    problem = make_problem(10, 3)
-    result = run(problem, generations=12, callback=ConvergenceRecorder(), save_history=True)
-    recorder = result.algorithm.callback
-    assert recorder.generations == list(range(1, 13))
-    assert recorder.evaluations == [60 * k for k in range(1, 13)]
-    for k, past in enumerate(result.history):
-        expected = front_by_definition(problem, past.pop.get("X"))
-        legal = past.pop.get("interfering_cells") == 0
-        assert recorder.n_feasible[k] == legal.sum()
-        assert {tuple(row) for row in recorder.fronts[k].tolist()} == set(expected)
-        assert recorder.best_length[k] == min((point[0] for point in expected), default=np.inf)
-        assert recorder.best_vulnerability[k] == min((point[1] for point in expected), default=np.inf)
-    first = next(k for k, n in enumerate(recorder.n_feasible) if n)
-    assert recorder.first_feasible == first
-
-
-def test_the_recorder_is_copied_pickled_and_collected(results):
-    recorder = results[0].algorithm.callback
-    for again in (pickle.loads(pickle.dumps(recorder)), copy.deepcopy(recorder)):
-        assert again.evaluations == recorder.evaluations
-        assert np.array_equal(again.hypervolume(), recorder.hypervolume())
-    problem = make_problem()
-    result = run(problem, generations=3, callback=CallbackCollection(ConvergenceRecorder()))
-    assert len(result.algorithm.callback.callbacks[0]) == 3
-
-
-def test_hypervolume_by_hand():
-    recorder = ConvergenceRecorder()
-    recorder.evaluations, recorder.generations, recorder.n_feasible = [1, 2, 3], [1, 2, 3], [0, 1, 2]
-    recorder.fronts = [np.empty((0, 2)), np.array([[2.0, 2.0]]), np.array([[1.0, 3.0], [2.0, 2.0]])]
-    assert recorder.hypervolume([4, 4]).tolist() == [0.0, 4.0, 5.0]
-    assert common_reference_point([recorder]).tolist() == pytest.approx([2.1, 3.1])
-    with pytest.raises(GridPathError, match="2 numbers"):
-        recorder.hypervolume([4, 4, 4])
-    with pytest.raises(GridPathError, match="no run"):
-        common_reference_point([ConvergenceRecorder()])

@@ -1,5 +1,8 @@
 """Figures: what the Axes hold, that nothing leaks, and that files are reproducible."""
 
+import itertools
+from types import SimpleNamespace
+
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -232,6 +235,73 @@ def test_the_stairs_bound_what_the_front_dominates(two):
         assert corner.tolist() == [right[0], left[1]]
 
 
+def set_of(F, objectives=("length", "vulnerability")):
+    """What a front is drawn from, with given points."""
+    return SimpleNamespace(
+        F=np.array(F, dtype=float),
+        problem=make_problem(objectives=objectives),
+        objective_names=list(objectives),
+        feasible=True,
+        index=lambda name: 0 if name in ("shortest", "smoothest") else len(F) - 1,
+    )
+
+
+def limits(ax):
+    return [getattr(ax, f"get_{name}lim")() for name in ("x", "y", "z") if hasattr(ax, f"get_{name}lim")]
+
+
+def shown_ticks(ax):
+    """Ticks of both axes in view, whose labels are whole numbers, not what to add to another at the axis's end."""
+    ax.figure.draw_without_rendering()
+    assert [axis.get_offset_text().get_text() for axis in (ax.xaxis, ax.yaxis)] == ["", ""]
+    places = zip(limits(ax), (ax.get_xticks(), ax.get_yticks()), strict=True)
+    return [[tick for tick in ticks if low <= tick <= high] for (low, high), ticks in places]
+
+
+@pytest.mark.parametrize("point", [(9.9, 0.0), (9.9, 12.67), (4321.5, 1e-9), (3.0, 45.0)])
+def test_a_front_of_one_point_stands_well_within_axes_that_do_not_zoom_in_on_it(point):
+    ax = plot_front(set_of([point]))
+    for value, (low, high) in zip(point, limits(ax), strict=True):
+        margin = (value - low) / (high - low)
+        assert 0.05 < margin < 0.95
+        assert 0.15 * value < high - low < max(0.3 * value, 2.0)
+    assert min(tick for ticks in shown_ticks(ax) for tick in ticks) >= 0
+    text = next(text for text in ax.texts if text.get_text())
+    box, dot = text.get_window_extent(), ax.transData.transform(point)
+    assert not box.contains(*dot) and ax.get_window_extent().contains(*box.min) and ax.get_window_extent().contains(*box.max)
+
+
+@pytest.mark.parametrize("F", [[(1000.2, 5.0), (1000.8, 4.9)], [(5000.0, 5.0001), (5000.03, 5.0)]])
+def test_a_front_of_two_near_points_has_whole_numbers_at_its_ticks_that_do_not_overlap(F):
+    ax = plot_front(set_of(F))
+    x, y = shown_ticks(ax)
+    assert len(x) > 2 and len(y) > 2
+    for label, following in itertools.pairwise(ax.get_xticklabels()):
+        assert label.get_window_extent().x1 < following.get_window_extent().x0
+    low, high = ax.get_xlim()
+    assert low < F[0][0] and F[1][0] < high < F[1][0] + 0.2 * (F[1][0] - F[0][0])
+
+
+def test_points_that_differ_by_rounding_are_drawn_as_one():
+    (x_low, x_high), (y_low, y_high) = limits(plot_front(set_of([(9.9, 12.5 + 1e-12), (9.9 + 1e-12, 12.5)])))
+    assert x_high - x_low > 1.0 and y_high - y_low > 1.0
+
+
+def test_a_value_that_all_points_share_is_not_zoomed_in_on_in_space_or_colour():
+    one = set_of([(9.9, 0.0, 0.0)], ("length", "vulnerability", "turn"))
+    for value, (low, high) in zip(one.F[0], limits(plot_front(one)), strict=True):
+        assert low < value < high and high - low > 1.0 and low > -0.1
+    plane = plot_front(one, objectives=("length", "vulnerability"))
+    assert plane.collections[0].get_clim() == (0.0, 1.0)
+
+
+def test_later_fronts_in_the_same_axes_are_in_view_too():
+    ax = plot_front(set_of([(9.9, 12.5)]))
+    plot_front(set_of([(20.0, 40.0), (30.0, 30.0)]), ax=ax)
+    (x_low, x_high), (y_low, y_high) = limits(ax)
+    assert x_low < 9.9 and x_high > 30.0 and y_low < 12.5 and y_high > 40.0
+
+
 def test_three_objectives_are_drawn_in_space_or_projected(three):
     ax = plot_front(three)
     assert ax.name == "3d"
@@ -300,6 +370,15 @@ def test_runs_with_other_evaluations_keep_their_latest_value():
     ax = plot_convergence([recorder_of([10, 30], [9.0, 5.0]), recorder_of([20, 40], [7.0, 3.0])])
     assert ax.lines[0].get_xdata().tolist() == [20, 30, 40]
     assert ax.lines[0].get_ydata().tolist() == [8.0, 6.0, 4.0]
+
+
+def test_a_run_that_stands_still_or_ends_at_once_is_seen():
+    still = recorder_of([10, 20], [9.0, 9.0])
+    still.best_vulnerability = [0.0, 0.0]
+    low, high = plot_convergence(still, "vulnerability").get_ylim()
+    assert -0.1 < low < 0.0 and high > 1.0
+    ax = plot_convergence(recorder_of([10], [9.0]))
+    assert ax.lines[0].get_marker() == "." and 8.0 < ax.get_ylim()[0] < 9.0 < ax.get_ylim()[1] < 10.0
 
 
 def test_no_first_legal_path_is_claimed_where_most_runs_have_none():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from collections.abc import Callable
 from typing import Any
@@ -29,7 +30,8 @@ class ExactFront(Algorithm):
     max_memory : int, optional
     watch : callable, optional
         Budgets, see `Budget`. When one is used up, the Result holds the best paths found by then, ``result.success`` is
-        False, and ``result.message`` says which budget it was.
+        False, and ``result.message`` says which budget it was. The algorithm lets go of ``watch`` when the search has ended,
+        so that a Result can be pickled whatever it was.
     **kwargs
         What every pymoo algorithm takes, such as ``callback``.
 
@@ -76,6 +78,7 @@ class ExactFront(Algorithm):
 
     def _initialize_infill(self):
         self.found = exact_front(self.problem, self.budget)
+        self.budget = dataclasses.replace(self.budget, watch=None)
         return Population.new("X", self.found.X)
 
     def _initialize_advance(self, infills=None, **kwargs):

@@ -61,7 +61,8 @@ def plot_convergence(
     middle = np.median(values, axis=0)
     with style.figure_style(ax):
         ax = style.new_axes((4.4, 3.0)) if ax is None else ax
-        look = {"color": color, "linewidth": 1.4, "drawstyle": "steps-post"}
+        # A single generation makes no line.
+        look = {"color": color, "linewidth": 1.4, "drawstyle": "steps-post", "marker": "." if len(evaluations) == 1 else ""}
         name = label or ("median" if len(recorders) > 1 else "")
         if not any(any(recorder.n_feasible) for recorder in recorders):
             name = f"{name}: no legal path" if name else "no legal path"
@@ -136,6 +137,7 @@ def _mark_first(ax: Axes, recorders: list[ConvergenceRecorder], color: str, brie
 def _dress(ax: Axes, quantity: Quantity) -> None:
     ax.set_xlabel("Evaluations")
     ax.set_ylabel(_LABELS[quantity])
+    style.widen_limits(ax)
     ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
     curves = [np.asarray(line.get_xydata(), dtype=float) for line in ax.lines if line.get_drawstyle() == "steps-post"]
     ax.set_xlim(0.0, 1.04 * max(curve[-1, 0] for curve in curves))

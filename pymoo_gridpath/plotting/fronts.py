@@ -107,7 +107,8 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         shown = other[:, columns]
         if whole:
             shown = shown[np.lexsort(shown.T[::-1])]
-            ax.plot(*_staircase(shown).T, color=style.REFERENCE, linewidth=0.7, linestyle=(0, (4, 2)), zorder=1)
+            lines.append(_staircase(shown))
+            ax.plot(*lines[-1].T, color=style.REFERENCE, linewidth=0.7, linestyle=(0, (4, 2)), zorder=1)
         look = {"s": 16, "marker": "o", "facecolors": "none", "edgecolors": style.REFERENCE, "linewidths": 0.7}
         ax.scatter(*shown.T, **look, label=reference_label, zorder=2)
         lines += [shown[[k]] for k in range(len(shown))]
@@ -117,7 +118,10 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         lines.append(stairs)
     rest = [k for k in range(trade_off.F.shape[1]) if k not in columns]
     if len(rest) == 1:
-        dots = ax.scatter(*F.T, s=18, c=trade_off.F[:, rest[0]], cmap="cividis", zorder=3, label="trade-off paths")
+        values = trade_off.F[:, rest[0]]
+        low, high = style.span(values)
+        look = {"c": values, "cmap": "cividis", "vmin": low, "vmax": high}
+        dots = ax.scatter(*F.T, s=18, **look, zorder=3, label="trade-off paths")
         bar = ax.figure.colorbar(dots, ax=ax, label=_label(trade_off, rest[0]), pad=0.02)
         bar.outline.set_linewidth(0.5)  # pyright: ignore[reportCallIssue]
     else:
@@ -131,6 +135,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
     ax.set_ylabel(_label(trade_off, columns[1]))
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
+    style.widen_limits(ax)
     ax.margins(0.1)
     style.fix_ticks(ax)
     style.warn_infeasible(ax, trade_off)
@@ -151,7 +156,9 @@ def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> 
     if len(plain):
         ax.scatter(*F[plain].T, s=14, color=style.OTHERS, depthshade=False, linewidths=0, label="trade-off paths")
     shown = F if other is None else np.concatenate([F, other[:, columns]])
-    floor = shown[:, 2].min() - 0.05 * (np.ptp(shown[:, 2]) or 1.0)
+    spans = [style.span(values) for values in shown.T]
+    low, high = spans[2]
+    floor = low - 0.05 * (high - low)
     for k, point in enumerate(F):
         # Stems tell where on the floor a point stands.
         names = groups.get(k)
@@ -165,6 +172,7 @@ def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> 
     ax.set_ylabel(_label(trade_off, columns[1]))
     ax.set_zlabel(_label(trade_off, columns[2]))
     style.fix_ticks(ax)
+    ax.auto_scale_xyz(*spans, had_data=True)
     ax.set_zlim(bottom=floor)
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         axis.set_major_locator(MaxNLocator(5))

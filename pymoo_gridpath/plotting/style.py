@@ -8,7 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
+from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,12 @@ STYLE = {
 }
 
 
+# Values that differ by no more than this share of the largest are drawn as the same.
+_SAME = 1e-6
+
+# A value that all points share is drawn as zero if it is smaller than this.
+_NEAR_ZERO = 1e-3
+
 # Axes that this package made, so that later calls draw into them in the same style.
 _OWN: weakref.WeakSet[Axes] = weakref.WeakSet()
 
@@ -98,6 +107,36 @@ def fix_ticks(ax: Axes) -> None:
     for axis in ("x", "y"):
         size, width, length = (now[f"{axis}tick.{key}"] for key in ("labelsize", "major.width", "major.size"))
         ax.tick_params(axis=axis, labelsize=size, width=width, length=length)
+
+
+def span(values: ArrayLike) -> tuple[float, float]:
+    """Return the range that an axis should show: that of the values, or one around them where they hardly differ.
+
+    Left to itself, matplotlib would zoom in on rounding errors, and show negative numbers where every value is 0.
+    """
+    low, high = float(np.min(values)), float(np.max(values))
+    size = max(abs(low), abs(high))
+    if high - low > _SAME * size:
+        return low, high
+    return (low, low + 1.0) if size < _NEAR_ZERO else (low - 0.1 * size, high + 0.1 * size)
+
+
+def widen_limits(ax: Axes) -> None:
+    """Let the limits of Axes take in the `span` of what is drawn, and give its ticks full numbers."""
+    if not np.isfinite(ax.dataLim.get_points()).all():
+        return
+    spans = np.array([span(ax.dataLim.intervalx), span(ax.dataLim.intervaly)])
+    ax.update_datalim(spans.T)
+    ax.autoscale_view()
+    low, high = spans[0]
+    if high - low < 1e-3 * max(abs(low), abs(high)):
+        # Few, for the numbers are long.
+        ax.xaxis.set_major_locator(MaxNLocator(4))
+    for axis in (ax.xaxis, ax.yaxis):
+        formatter = axis.get_major_formatter()
+        if isinstance(formatter, ScalarFormatter):
+            # Not their differences from a number at the axis's end.
+            formatter.set_useOffset(False)
 
 
 def warn_infeasible(ax: Axes, trade_off) -> None:

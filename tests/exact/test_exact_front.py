@@ -181,6 +181,19 @@ def test_a_budget_ends_the_search_with_the_part_found(objectives, budget):
         assert all((front <= f).all(axis=1).any() for f in found.F)
 
 
+def test_what_watches_ends_the_search_and_is_not_in_the_result():
+    problem = GridPathProblem(random_grid(60, 2), (0, 0), (59, 59), "cells")
+    seen = []
+    algorithm = ExactFront(watch=lambda meter: not seen.append(meter.elapsed))
+    result = minimize(problem, algorithm, save_history=True)
+    assert len(seen) == 1 and result.success is False and "stopped by who watched it" in result.message
+    again = pickle.loads(pickle.dumps(result))
+    assert again.message == again.algorithm.found.message == result.message
+    np.testing.assert_array_equal(again.F, result.F)
+    # minimize() ran a copy: the algorithm that it was given still watches.
+    assert minimize(problem, algorithm).message == result.message and len(seen) == 2
+
+
 def test_a_pareto_front_that_takes_too_long_is_none_and_says_so():
     problem = GridPathProblem(random_grid(32, 6), (0, 0), (31, 31))
     with pytest.warns(UserWarning, match="no Pareto front: the search ended early, the time budget of 0 s is used up"):
