@@ -28,7 +28,7 @@ class Hull(NamedTuple):
         Weights of a sum of both costs for each gap between neighbouring points; one row if there is a single point.
     weighted : numpy.ndarray of float32, shape (n_states, n_weights)
         Least weighted sum from each state to the goal, or a little less: single precision, rounded down, is precise enough for
-        a bound and takes half the room.
+        a bound and takes half the room. Huge where no path to a point in the gap can lead.
     column : numpy.ndarray of int64, shape (n_gaps,)
         Column of ``weighted`` for each gap.
     """
@@ -69,28 +69,32 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     del searches
     n_weights = _affordable(n_weights, bounds, meter)
     weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
+    spent = _spent(moves, costs, start)
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
     found, used = {left: first, right: last}, []
-    gaps = [(0.0, left, right)] if left != right else []
+    # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
+    gaps, narrow = [(0.0, left, right, 0)] if left != right else [], []
     while gaps and len(used) < n_weights:
         meter.check()
         if meter.message:
             break
-        _, low, high = heapq.heappop(gaps)
+        _, low, high, _ = heapq.heappop(gaps)
+        column = len(used)
         used.append(_normal(low, high))
-        sums, point, path = _minimise(moves, costs, used[-1], start, goal)
-        weighted[:, len(used) - 1] = _rounded_down(sums)
-        found.setdefault(point, path)
+        sums, point, path = _minimise(moves, costs, used[-1], start, goal, spent, (high[0], low[1]))
+        weighted[:, column] = _rounded_down(sums)
         if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
+            found[point] = path
             for a, b in ((low, point), (point, high)):
-                heapq.heappush(gaps, (-max((b[0] - a[0]) / extent[0], (a[1] - b[1]) / extent[1]), a, b))
+                heapq.heappush(gaps, (-max((b[0] - a[0]) / extent[0], (a[1] - b[1]) / extent[1]), a, b, column))
+        else:
+            narrow.append((low, column))
+    narrow += [(low, column) for _, low, _, column in gaps]
     if not used:
         used, weighted = [(1.0, 1.0)], _rounded_down(bounds.sum(axis=0))[:, None]
-    points = np.array(sorted(found))
-    points = points[np.concatenate([[True], points[1:, 1] < np.minimum.accumulate(points[:, 1])[:-1]])]
-    column = _nearest(points, used)
-    paths = [found[int(a), int(b)] for a, b in points]
-    return Hull(bounds, points, paths, np.array(used)[column], weighted, column)
+    points = sorted(found)
+    column = np.array([column for _, column in sorted(narrow)] or [0])
+    return Hull(bounds, np.array(points), [found[point] for point in points], np.array(used)[column], weighted, column)
 
 
 def _rounded_down(sums: np.ndarray) -> np.ndarray:
@@ -159,21 +163,32 @@ def _normal(low, high) -> tuple[float, float]:
     return first / larger, second / larger
 
 
-def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int):
-    """Return least weighted sums from every state, rounded down step by step, and the point and the cells of their path."""
+def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent: np.ndarray, corner):
+    """Return least weighted sums from every state, rounded down step by step, and the point and the cells of their path.
+
+    States from which no path below the corner goes on have no finite sum.
+    """
     step = np.stack([_weighted(costs.step, weights), costs.step[0]])
     field = np.stack([_weighted(costs.field, weights), costs.field[0]])
-    found = backward_costs(moves, step, field, goal, costs.with_heading)
+    # One unit beyond the corner lies what labels stay below, see _corners of the label search; and one more for rounding.
+    limit = int((weights[0] * (corner[0] + 1) + weights[1] * (corner[1] + 1)) * (1 + 1e-12)) + 2
+    found = backward_costs(moves, step, field, goal, costs.with_heading, _weighted(spent, weights), limit)
     point, path = _follow(moves, costs, costs._replace(step=step, field=field), found, start, goal)
     return found[0][0], point, path
 
 
+def _spent(moves: Moves, costs: Costs, start: int) -> np.ndarray:
+    """Return lower bounds of both costs from the start to each cell, int64, shape (2, n_cells)."""
+    least = np.broadcast_to(costs.step.min(axis=1, keepdims=True), costs.step.shape)
+    back = moves.backward()
+    spent = np.empty_like(costs.field)
+    for k in range(2):
+        # The search enters the start instead of the cell that it set out from.
+        ahead = backward_costs(back, np.stack([least[k]] * 2), np.stack([costs.field[k]] * 2), start)[0][0]
+        spent[k] = np.minimum(ahead + costs.field[k] - costs.field[k, start], UNREACHABLE)
+        spent[k, start] = 0
+    return spent
+
+
 def _weighted(values: np.ndarray, weights) -> np.ndarray:
     return np.floor(weights[0] * values[0] + weights[1] * values[1]).astype(np.int64)
-
-
-def _nearest(points: np.ndarray, used) -> np.ndarray:
-    """Return for each gap between points which of the weights are nearest to its normal."""
-    angle = np.array([np.arctan2(second, first) for first, second in used])
-    gap = np.diff(points, axis=0).astype(float) if len(points) > 1 else np.array([[1.0, -1.0]])
-    return np.abs(np.arctan2(gap[:, 0], -gap[:, 1])[:, None] - angle[None, :]).argmin(axis=1)

@@ -19,6 +19,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.smooth import smoothest_paths
 from pymoo_gridpath.exact.supported import Hull, supported_points
 from pymoo_gridpath.search import HEADINGS, UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
@@ -76,6 +77,9 @@ def direct_headings() -> np.ndarray:
 def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
     """Return the exact front of two objectives.
 
+    Of paths with the same costs it holds the one that turns least, as long as memory lasts; any one if a cost depends on
+    headings.
+
     Parameters
     ----------
     moves : Moves
@@ -102,7 +106,7 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
         search.run(meter, tolerance)
         found.append(Front(search.paths(), search.points()))
         known = _non_dominated(np.concatenate([known, found[-1].points]))
-    return _merged(found) if meter.message else found[-1]
+    return _merged(found) if meter.message else Front(search.smoothest_paths(meter), search.points())
 
 
 def _merged(fronts: list[Front]) -> Front:
@@ -154,7 +158,7 @@ class _Search:
                 f1 = self.costs.step[0, 8, m] + state[FIELD1] + state[BOUND1]
                 f2 = self.costs.step[1, 8, m] + state[FIELD2] + state[BOUND2]
                 if f1 < UNREACHABLE:
-                    push(self.heap, self.counts[N_OPEN], f1, f2, (8 * cell + m) << 32)
+                    push(self.heap, self.counts[N_OPEN], f1, 2 * f2 + (cell == self.goal), (8 * cell + m) << 32)
                     self.counts[N_OPEN] += 1
 
     def run(self, meter: Meter, tolerance: float) -> None:
@@ -212,6 +216,16 @@ class _Search:
     def paths(self) -> list[np.ndarray]:
         """Return the cells of the paths found."""
         return [trace(self.closed, int(number)) for number in self.found[: self.counts[N_FOUND], 0]]
+
+    def smoothest_paths(self, meter: Meter) -> list[np.ndarray]:
+        """Return the cells of the paths found, or of those with the same costs that turn less."""
+        # The labels that are still open have served.
+        self.heap = np.empty((0, 3), dtype=np.int64)
+        if self.costs.with_heading:
+            return self.paths()
+        closed, ends = self.closed[: self.counts[N_CLOSED]], self.found[: self.counts[N_FOUND], 0]
+        paths = smoothest_paths(self.moves, self.costs, closed, ends, meter)
+        return self.paths() if paths is None else paths
 
 
 def grow(array: np.ndarray) -> None:
@@ -326,7 +340,8 @@ def search_two(
     weights, weighted, column, corners, ceilings, marks
         See `Hull` and `_corners`.
     heap : int64, shape (n, 3)
-        Open labels: f1, f2 and ``(8 * cell + heading) << 32 | parent``.
+        Open labels: f1, ``2 * f2`` (plus 1 at the goal, which so comes after all that is equal, see `smoothest_paths`) and
+        ``(8 * cell + heading) << 32 | parent``.
     closed : int32, shape (n, 2)
         Closed labels: cell and number of the parent.
     found : int64, shape (n, 3)
@@ -360,7 +375,7 @@ def search_two(
             break
         pops += 1
         f1 = heap[0, 0]
-        f2 = heap[0, 1]
+        f2 = heap[0, 1] >> 1
         load = heap[0, 2]
         drop_first(heap, n)
         n -= 1
@@ -421,7 +436,7 @@ def search_two(
             if next_f1 >= 2**61:
                 continue
             if promising(next_f1, next_f2, next1, next2, next_state, weighted, column, weights, ceilings, marks, gap):
-                push(heap, n, next_f1, next_f2, (8 * next_cell + m) << 32 | n_closed)
+                push(heap, n, next_f1, 2 * next_f2 + (next_cell == goal), (8 * next_cell + m) << 32 | n_closed)
                 n += 1
         n_closed += 1
     counts[N_OPEN], counts[N_CLOSED] = n, n_closed

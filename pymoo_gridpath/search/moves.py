@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable
 
 import numpy as np
@@ -57,6 +58,15 @@ class Moves:
 
     def _shifted(self, padded: np.ndarray, dx: int, dy: int) -> np.ndarray:
         return padded[1 + dy : 1 + dy + self.height, 1 + dx : 1 + dx + self.width]
+
+    def backward(self) -> Moves:
+        """Return the steps that lead back: along the opposite heading wherever a step leads forth."""
+        back = copy.copy(self)
+        back.legal = np.zeros_like(self.legal)
+        for m in range(8):
+            leads = np.flatnonzero(self.legal >> np.uint8(m) & 1)
+            back.legal[leads + self.offsets[m]] |= np.uint8(1 << (m + 4) % 8)
+        return back
 
     @property
     def n_cells(self) -> int:

@@ -13,7 +13,13 @@ UNREACHABLE = 2**61
 
 
 def backward_costs(
-    moves: Moves, step: np.ndarray, field: np.ndarray, goal: int, with_heading: bool = False
+    moves: Moves,
+    step: np.ndarray,
+    field: np.ndarray,
+    goal: int,
+    with_heading: bool = False,
+    spent: np.ndarray | None = None,
+    limit: int = UNREACHABLE,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the costs of the lexicographically cheapest path to a goal from every cell, or from every cell and heading.
 
@@ -30,6 +36,10 @@ def backward_costs(
         Index of the goal cell.
     with_heading : bool, default False
         Whether costs depend on the heading before a step.
+    spent : numpy.ndarray of int64, shape (n_cells,), optional
+        Least first cost of a path from somewhere to each cell, 0 by default.
+    limit : int, optional
+        Cells are left out, as if no path led on, where the least first cost of what is spent and what lies ahead reaches it.
 
     Returns
     -------
@@ -42,12 +52,14 @@ def backward_costs(
     cost = np.full((2, moves.n_cells * (8 if with_heading else 1)), UNREACHABLE)
     ahead = np.full(cost.shape[1], -1, dtype=np.int8)
     heap = np.empty((1024, 3), dtype=np.int64)
-    _backward(moves.legal, moves.offsets, step, field, goal, with_heading, cost, ahead, heap)
+    if spent is None:
+        spent = np.zeros(moves.n_cells, dtype=np.int64)
+    _backward(moves.legal, moves.offsets, step, field, goal, with_heading, spent, limit, cost, ahead, heap)
     return cost, ahead
 
 
 @kernel
-def _backward(legal, offsets, step, field, goal, with_heading, cost, ahead, heap):
+def _backward(legal, offsets, step, field, goal, with_heading, spent, limit, cost, ahead, heap):
     n_cells = len(legal)
     n = 0
     for h in range(8 if with_heading else 1):
@@ -79,6 +91,8 @@ def _backward(legal, offsets, step, field, goal, with_heading, cost, ahead, heap
                 heading = h if with_heading else 8
                 total1 = first + step[0, heading, m] + field[0, cell]
                 total2 = second + step[1, heading, m] + field[1, cell]
+                if total1 + spent[before] >= limit:
+                    continue
                 if total1 < cost[0, origin] or (total1 == cost[0, origin] and total2 < cost[1, origin]):
                     cost[0, origin] = total1
                     cost[1, origin] = total2

@@ -146,6 +146,14 @@ def solvable_seeds():
     return seeds
 
 
+def assert_smoothest(F, turn, measures, names):
+    """Of all paths with the measures of a point, the one that is given turns least."""
+    scores = np.column_stack([measures[name] for name in names])
+    for point, given in zip(F, turn, strict=True):
+        equal = np.isclose(scores, point, rtol=1e-12, atol=1e-12).all(axis=1)
+        assert given == np.array(measures["turn"])[equal].min()
+
+
 @pytest.mark.parametrize("part", range(10))
 def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
     sizes = []
@@ -164,6 +172,8 @@ def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
             np.testing.assert_array_equal(out["F"], found.F)
             assert (out["interfering_cells"] == 0).all()
             sizes.append(len(expected))
+            if problem.objective_names[0] == "length" and problem.n_obj == 2:
+                assert_smoothest(found.F, out["turn"], measures, problem.objective_names)
     # The test would say little if all fronts were single points.
     assert max(sizes) >= 4
     assert np.mean(np.array(sizes) > 1) > 0.2

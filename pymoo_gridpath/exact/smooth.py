@@ -1,0 +1,203 @@
+"""Of all paths that have the costs of a point of the front, the one that turns least.
+
+A label search keeps one label for each state and costs, and one path to it. But whatever else leads there at the same costs
+comes from labels that it has kept, too: the beginning of a path to a point of the front is dominated by no other. So the labels
+hold all paths to the front, and the least turn among them follows from the start on.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.exact.budget import Meter
+from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.search import HEADINGS, Moves, turn_units
+
+# More than any path turns.
+_NEVER = np.iinfo(np.int32).max // 2
+
+# Bytes of a closed label while the labels are put in order, and of one that leads to the front, besides.
+_BYTES_OF_CLOSED, _BYTES_OF_LEADING = 8 + 16 + 4 + 4, 2 * 4 + 8 * (4 + 4 + 1)
+
+
+def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.ndarray, meter: Meter) -> list[np.ndarray] | None:
+    """Return the cells of the path with the least turn to each of some labels.
+
+    None if there is too little memory for it, or if steps may cost nothing, so that paths could lead round in circles.
+
+    Parameters
+    ----------
+    moves : Moves
+    costs : Costs
+        Of two objectives that do not depend on headings.
+    closed : numpy.ndarray of int32, shape (n, 2)
+        Cells and parents of the labels, those of each cell in ascending order of the first cost; the first is the start.
+    ends : numpy.ndarray of int64, shape (N,)
+        Numbers of labels that are non-dominated paths.
+    meter : Meter
+    """
+    entered = np.zeros(moves.n_cells, dtype=bool)
+    entered[closed[1:, 0]] = True
+    if (costs.step.min(axis=(1, 2))[:, None] + costs.field == 0).all(axis=0)[entered].any():
+        return None
+    if meter.n_fixed + len(closed) * (_BYTES_OF_CLOSED + _BYTES_OF_LEADING) >= meter.memory:
+        return None
+    heading_of = np.full((3, 3), -1)
+    heading_of[HEADINGS[:, 1] + 1, HEADINGS[:, 0] + 1] = np.arange(8)
+    first, place = _grouped(closed, moves.n_cells)
+    cell, spent = _spent(closed, place, moves.width, heading_of, costs.step, costs.field)
+    start, end = place[0], place[ends]
+    del place
+    labels: Any
+    # From here on labels are known by their place in the order of the cells, and those that lead to the ends by their slot.
+    labels, slot, parents = _leading_to(end, cell, spent, first, moves.legal, moves.offsets, costs.step, costs.field)
+    start, end = slot[start], slot[end]
+    order = np.lexsort((spent[labels, 1], spent[labels, 0]))
+    cell = cell[labels]
+    meter.note(len(closed), len(closed) * _BYTES_OF_CLOSED + parents.nbytes + labels.nbytes)
+    del spent, slot
+    turn = np.full((len(labels), 8), _NEVER, dtype=np.int32)
+    before = np.full((len(labels), 8), -1, dtype=np.int8)
+    _least_turns(order, parents, start, turn_units(), turn, before)
+    return [_trace(cell, parents, start, turn, before, k) for k in end]
+
+
+@kernel
+def _grouped(closed, n_cells):
+    """Return where the labels of each cell begin when ordered by cells, and the place of each label in that order."""
+    first = np.zeros(n_cells + 1, dtype=np.int64)
+    for k in range(len(closed)):
+        first[closed[k, 0] + 1] += 1
+    for cell in range(n_cells):
+        first[cell + 1] += first[cell]
+    following = first.copy()
+    place = np.empty(len(closed), dtype=np.int32)
+    for k in range(len(closed)):
+        place[k] = following[closed[k, 0]]
+        following[closed[k, 0]] += 1
+    return first, place
+
+
+@kernel
+def _spent(closed, place, width, heading_of, step, field):
+    """Return the cell, int32, shape (n,), and the costs, int64, shape (n, 2), of the label at each place."""
+    cells = np.empty(len(closed), dtype=np.int32)
+    cells[place[0]] = closed[0, 0]
+    spent = np.zeros((len(closed), 2), dtype=np.int64)
+    for k in range(1, len(closed)):
+        cell = closed[k, 0]
+        parent = closed[k, 1]
+        before = closed[parent, 0]
+        m = heading_of[cell // width - before // width + 1, cell % width - before % width + 1]
+        for i in range(2):
+            spent[place[k], i] = spent[place[parent], i] + step[i, 8, m] + field[i, cell]
+        cells[place[k]] = cell
+    return cells, spent
+
+
+@kernel
+def _parent(label, m, cell, spent, first, legal, offsets, step, field):
+    """Return the label from which a step along heading m leads to a label at its costs, -1 if there is none."""
+    before = cell[label] - offsets[m]
+    if before < 0 or before >= len(legal) or not (legal[before] >> m) & 1:
+        return -1
+    cost1 = step[0, 8, m] + field[0, cell[label]]
+    cost2 = step[1, 8, m] + field[1, cell[label]]
+    wanted = spent[label, 0] - cost1
+    low = first[before]
+    high = first[before + 1]
+    while low < high:
+        middle = (low + high) >> 1
+        if spent[middle, 0] < wanted:
+            low = middle + 1
+        else:
+            high = middle
+    if low == first[before + 1] or spent[low, 0] != wanted or spent[low, 1] != spent[label, 1] - cost2:
+        return -1
+    return low
+
+
+@kernel
+def _leading_to(ends, cell, spent, first, legal, offsets, step, field):
+    """Return the labels on paths to the ends, the slot of each label among them, and the slots of their parents by heading."""
+    slot = np.full(len(cell), -1, dtype=np.int32)
+    labels = np.empty(1024, dtype=np.int32)
+    n = 0
+    for end in ends:
+        if n == len(labels):
+            labels = _doubled(labels)
+        slot[end] = n
+        labels[n] = end
+        n += 1
+    parents = np.full((1024, 8), -1, dtype=np.int32)
+    i = 0
+    while i < n:
+        if n + 8 > len(labels):
+            labels = _doubled(labels)
+        if i == len(parents):
+            parents = _doubled(parents)
+        for m in range(8):
+            parent = _parent(labels[i], m, cell, spent, first, legal, offsets, step, field)
+            if parent >= 0 and slot[parent] < 0:
+                slot[parent] = n
+                labels[n] = parent
+                n += 1
+            parents[i, m] = slot[parent] if parent >= 0 else -1
+        i += 1
+    return labels[:n].copy(), slot, parents[:n].copy()
+
+
+@kernel
+def _doubled(array):
+    larger = np.empty((2 * array.shape[0], *array.shape[1:]), dtype=array.dtype)
+    larger[: array.shape[0]] = array
+    return larger
+
+
+@kernel
+def _least_turns(order, parents, start, units, turn, before):
+    """Fill in the least turn of a path to each label that comes along each heading, and the heading before that."""
+    for i in order:
+        for m in range(8):
+            parent = parents[i, m]
+            if parent == start:
+                # Nothing comes before the first step.
+                turn[i, m] = 0
+                continue
+            if parent < 0:
+                continue
+            for h in range(8):
+                total = turn[parent, h] + units[h, m]
+                if total < turn[i, m]:
+                    turn[i, m] = total
+                    before[i, m] = h
+
+
+@kernel
+def _trace(cell, parents, start, turn, before, end):
+    """Return the cells of the path with the least turn to a label."""
+    last = 0
+    for m in range(8):
+        if turn[end, m] < turn[end, last]:
+            last = m
+    n = 1
+    label = end
+    heading = last
+    while label != start:
+        parent = parents[label, heading]
+        heading = before[label, heading]
+        label = parent
+        n += 1
+    cells = np.empty(n, dtype=np.int64)
+    label = end
+    heading = last
+    for k in range(n - 1, -1, -1):
+        cells[k] = cell[label]
+        if k > 0:
+            parent = parents[label, heading]
+            heading = before[label, heading]
+            label = parent
+    return cells
