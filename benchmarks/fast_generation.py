@@ -1,8 +1,9 @@
 """Compare the search quality of this package's NSGA-II, SPEA2 and MOEA/D with that of pymoo's own, seed by seed.
 
-Run with ``python benchmarks/fast_generation.py``; ``--help`` lists the options. Both sides have the paper's operators and no
+Run with ``python benchmarks/fast_generation.py``; ``--help`` lists the options. Both sides have the same operators and no
 tie-break by smoothness. NSGA-II and SPEA2 should tie: they are the same algorithms on arrays. MOEA/D differs by design (scaled
-objectives, a limit on replacements). The test is Wilcoxon's signed-rank test on the pairs of final hypervolumes.
+objectives, a limit on replacements); MOEAD/1 compares it with itself, one child at a time and with pymoo's mating, and should
+tie. The test is Wilcoxon's signed-rank test on the pairs of final hypervolumes.
 """
 
 from __future__ import annotations
@@ -12,28 +13,33 @@ import time
 from typing import Any
 
 import numpy as np
-from pymoo.algorithms.moo.moead import MOEAD
+from pymoo.algorithms.moo.moead import MOEAD, NeighborhoodSelection
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.algorithms.moo.spea2 import SPEA2
 from pymoo.core.algorithm import Algorithm
+from pymoo.core.mating import Mating
 from pymoo.indicators.hv import Hypervolume
 from pymoo.optimize import minimize
 from scipy.stats import wilcoxon
 
-from pymoo_gridpath.algorithms import make_algorithm, reference_directions
-from pymoo_gridpath.operators import paper_operators
+from pymoo_gridpath.algorithms import SmoothMOEAD, make_algorithm, reference_directions
+from pymoo_gridpath.operators import default_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 
 OBJECTIVES = ("length", "vulnerability", "turn")
 
 
 def stock(name: str, problem, pop_size: int) -> Algorithm:
-    """Return pymoo's algorithm with the paper's operators, and all else as pymoo has it."""
-    operators: dict[str, Any] = paper_operators(problem) | {"eliminate_duplicates": True}
-    if name != "MOEAD":
+    """Return what an algorithm is compared with: pymoo's with the same operators, and all else as pymoo has it."""
+    operators: dict[str, Any] = default_operators(problem) | {"eliminate_duplicates": True}
+    if not name.startswith("MOEAD"):
         return {"NSGA2": NSGA2, "SPEA2": SPEA2}[name](pop_size=pop_size, **operators)
     del operators["eliminate_duplicates"]
-    return MOEAD(reference_directions(problem.n_obj, pop_size), **operators)
+    directions = reference_directions(problem.n_obj, pop_size)
+    if name == "MOEAD":
+        return MOEAD(directions, **operators)
+    mating = Mating(NeighborhoodSelection(0.9), operators["crossover"], operators["mutation"], repair=operators["repair"])
+    return SmoothMOEAD(directions, smoothness=False, batch_size=1, mating=mating, **operators)
 
 
 def fronts(problem, algorithm: Algorithm, n_gen: int, n_seeds: int) -> tuple[list[np.ndarray], float]:
@@ -58,7 +64,8 @@ def main() -> None:
     parser.add_argument("--pop-size", type=int, default=60)
     parser.add_argument("--n-gen", type=int, default=25)
     parser.add_argument("--seeds", type=int, default=21)
-    parser.add_argument("--algorithms", nargs="+", default=["NSGA2", "SPEA2", "MOEAD"])
+    parser.add_argument("--representation", default="integer", help="cells has path-aware operators, others the paper's")
+    parser.add_argument("--algorithms", nargs="+", default=["NSGA2", "SPEA2", "MOEAD"], help="NSGA2, SPEA2, MOEAD or MOEAD/1")
     arguments = parser.parse_args()
 
     size, pop_size = arguments.size, arguments.pop_size
@@ -71,9 +78,10 @@ def main() -> None:
     )
     print(f"{'':9}{'goals':>6}{'ours':>9}{'stock':>9}{'diff.':>9}{'better':>8}{'worse':>7}{'p':>7}{'ours':>8}{'stock':>8}")
     for n_obj in (2, 3):
-        problem = GridPathProblem(grid, (0, 0), (size - 1, size - 1), objectives=OBJECTIVES[:n_obj])
+        goal = size - 1, size - 1
+        problem = GridPathProblem(grid, (0, 0), goal, arguments.representation, objectives=OBJECTIVES[:n_obj])
         for name in arguments.algorithms:
-            sides = make_algorithm(name, problem, pop_size, smoothness=False), stock(name, problem, pop_size)
+            sides = make_algorithm(name.split("/")[0], problem, pop_size, smoothness=False), stock(name, problem, pop_size)
             runs = [fronts(problem, side, arguments.n_gen, arguments.seeds) for side in sides]
             a, b = hypervolumes(*(found for found, _ in runs))
             p = wilcoxon(a, b)[1] if (a != b).any() else 1.0

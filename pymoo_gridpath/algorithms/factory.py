@@ -29,6 +29,7 @@ from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
+from pymoo_gridpath.operators.mating import knows_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 
@@ -169,7 +170,7 @@ def build(
         survival = settings.get("survival")
         if isinstance(survival, RankAndSmoothness):
             survival.distinct = True
-    if row.name in ("NSGA2", "SPEA2") and all(_is_ours(given[key]) for key in _OPERATORS if key in given):
+    if row.name in ("NSGA2", "SPEA2") and all(knows_arrays(given[key]) for key in _OPERATORS if key in given):
         # The same mating several times as fast; operators from elsewhere may need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
     settings.setdefault("evaluator", ArrayEvaluator())
@@ -248,16 +249,11 @@ def _class_of(row: Capability) -> type:
 def _fitted(row: Capability, operators: Mapping[str, Any], accepted) -> dict[str, Any]:
     """Return operators without those that an algorithm does not take, and with one child a mating if it needs that."""
     fitted = {key: value for key, value in operators.items() if key in accepted or key in ("sampling", "crossover", "mutation")}
-    if row.one_child and _is_ours(fitted.get("crossover")):
+    if row.one_child and knows_arrays(fitted.get("crossover")):
         crossover: Any = copy.copy(fitted["crossover"])
         crossover.n_offsprings = 1
         fitted["crossover"] = crossover
     return fitted
-
-
-def _is_ours(operator: Any) -> bool:
-    """Whether an operator is one of this package's."""
-    return type(operator).__module__.startswith("pymoo_gridpath.")
 
 
 def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from pymoo.algorithms.moo.moead import NeighborhoodSelection
 from pymoo.core.mating import Mating
 
+from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.duplicates import row_keys
 from pymoo_gridpath.operators.individuals import ArrayPopulation
 from pymoo_gridpath.operators.parameters import number
@@ -77,6 +79,51 @@ class ArrayMating(Mating):
         mutated = random_state.random(len(X)) <= number(self.mutation.prob)
         children = self.mutation._do(problem, X, random_state=random_state, **kwargs)
         return children if mutated.all() else np.where(mutated[:, None], children, X)
+
+
+class NeighborSelection(NeighborhoodSelection):
+    """MOEA/D's choice of different parents, from neighbourhoods or from all, with the draws for all matings at once.
+
+    Parameters
+    ----------
+    prob : float, default 1.0
+        Probability of a mating to be among neighbours.
+    """
+
+    def _do(self, problem, pop, n_select, n_parents, neighbors=None, random_state=None, **kwargs):
+        assert neighbors is not None and random_state is not None
+        among_near = random_state.random(n_select) < number(self.prob)
+        near, P = neighbors[among_near], np.empty((n_select, n_parents), dtype=int)
+        P[among_near] = np.take_along_axis(near, _different(len(near), n_parents, near.shape[1], random_state), axis=1)
+        P[~among_near] = _different(n_select - len(near), n_parents, len(pop), random_state)
+        return P
+
+
+def _different(n_rows: int, n: int, below: int, random_state) -> np.ndarray:
+    """Return rows of n different random numbers, 0 to ``below`` - 1, shape (n_rows, n)."""
+    if n_rows and n > below:
+        raise GridPathError(f"{n} different parents cannot be chosen among {below}")
+    return random_state.random((n_rows, below)).argsort(axis=1)[:, :n]
+
+
+class FirstChildMating(ArrayMating):
+    """Crossover, mutation and repair of given parents on one array of genes, with the first child of each mating.
+
+    Unlike in `ArrayMating`, children may equal one another and members of the population: each mating gives one.
+    """
+
+    def do(self, problem, pop, n_offsprings, random_state=None, n_max_iterations=None, parents=None, **kwargs):
+        """Return children of parents, a population of shape (n_offsprings, crossover.n_parents)."""
+        assert parents is not None and random_state is not None
+        X = np.array([individual.X for individual in parents.T.ravel()]).reshape(*parents.T.shape, -1)
+        children = self._cross(problem, X, random_state, kwargs)[:n_offsprings]
+        children = self._mutate(problem, children, random_state, kwargs)
+        return ArrayPopulation.of(self.repair._do(problem, children, random_state=random_state, **kwargs))
+
+
+def knows_arrays(operator) -> bool:
+    """Return whether an operator does all it does in ``_do``, as this package's own; others may need pymoo's mating."""
+    return type(operator).__module__.startswith("pymoo_gridpath.")
 
 
 def _unseen(X: np.ndarray, seen: set[bytes]) -> np.ndarray:

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from typing import Any
+
 import numpy as np
 import pytest
+from pymoo.algorithms.moo.moead import MOEAD
+from pymoo.core.mating import Mating
 from pymoo.core.population import Population
+from pymoo.decomposition.pbi import PBI
+from pymoo.decomposition.tchebicheff import Tchebicheff
+from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.bitflip import BitflipMutation
+from pymoo.operators.mutation.pm import PM
+from pymoo.operators.repair.rounding import RoundingRepair
 from pymoo.optimize import minimize
+from pymoo.problems.many.dtlz import DTLZ2
 
 from pymoo_gridpath import GridPathProblem
 from pymoo_gridpath.algorithms import SmoothMOEAD, make_algorithm, reference_directions
-from pymoo_gridpath.errors import CapabilityError
+from pymoo_gridpath.errors import CapabilityError, GridPathError
+from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection
 from pymoo_gridpath.problems.scenarios import random_dense_grid
 
 
@@ -22,7 +35,7 @@ def population(F, cv, turn, X=None):
 def prepared(make_problem, F, cv, turn, **kwargs):
     """Return an algorithm that is about to replace members of a hand-made population."""
     n = len(F)
-    algorithm = SmoothMOEAD(reference_directions(2, n), n_neighbors=n, **{"n_replace": n} | kwargs)
+    algorithm = SmoothMOEAD(reference_directions(2, n), **{"n_neighbors": n, "n_replace": n} | kwargs)
     algorithm.setup(make_problem(2, "constraint"), termination=("n_gen", 1), seed=1)
     algorithm.pop = population(F, cv, turn)
     algorithm.ideal = np.full(2, np.inf)
@@ -33,14 +46,17 @@ def prepared(make_problem, F, cv, turn, **kwargs):
 
 def replaced(algorithm, F, cv, turn, genes=-1):
     """Return whom a child replaces."""
-    child = population([F], [cv], [turn], np.array([[genes]]))[0]
-    algorithm._move_ideal(child.F[None], child.CV <= 0)
-    algorithm._replace(0, child)
-    places = [k for k, individual in enumerate(algorithm.pop) if individual is child]
-    # The arrays beside the population follow it.
+    children = population([F], [cv], [turn], np.array([[genes]]))
+    algorithm._replace(np.array([0]), children)
+    places = [k for k, individual in enumerate(algorithm.pop) if individual is children[0]]
+    check_arrays(algorithm)
+    return places
+
+
+def check_arrays(algorithm):
+    """The arrays beside the population follow it."""
     assert np.array_equal(algorithm._F, algorithm.pop.get("F")) and np.array_equal(algorithm._X, algorithm.pop.get("X"))
     assert np.array_equal(algorithm._cv, algorithm.pop.get("CV")[:, 0])
-    return places
 
 
 F3 = [[4.0, 0.0], [2.0, 2.0], [0.0, 4.0]]  # directions (0, 1), (1/2, 1/2), (1, 0)
@@ -57,8 +73,9 @@ def test_replacements_are_limited_and_copies_are_not_spread(make_problem):
     picked = [replaced(prepared(make_problem, F3, [0, 0, 0], [90, 90, 90], n_replace=2), [0, 0], 0, 90) for _ in range(3)]
     assert all(len(places) == 2 for places in picked)
     assert replaced(prepared(make_problem, F3, [0, 0, 0], [90, 90, 90]), [0, 0], 0, 90, genes=1) == []
-    with pytest.raises(CapabilityError, match="n_replace is 0"):
-        SmoothMOEAD(np.eye(2), n_replace=0)
+    for name in ("n_replace", "batch_size"):
+        with pytest.raises(CapabilityError, match=f"{name} is 0"):
+            SmoothMOEAD(np.eye(2), **{name: 0})
 
 
 def test_violation_goes_before_objectives_and_turn(make_problem):
@@ -117,6 +134,38 @@ def test_replacement_matches_a_loop(seed, make_problem):
     assert replaced(algorithm, *child) == expected(algorithm.ref_dirs, F, cv, turn, child)
 
 
+@pytest.mark.parametrize("seed", range(60))
+def test_children_of_a_batch_replace_one_after_another(seed, make_problem):
+    rng = np.random.default_rng(seed)
+    n, n_children = 12, 30
+    F, cv, turn = rng.integers(1, 6, (n, 2)), rng.integers(0, 2, n), rng.integers(0, 3, n)
+    genes = rng.integers(0, 40, (n_children, 1))
+    children = population(
+        rng.integers(0, 6, (n_children, 2)), rng.integers(0, 2, n_children), turn.repeat(3)[:n_children], genes
+    )
+    subproblems = rng.integers(0, n, n_children)
+    at_once, alone = (prepared(make_problem, F, cv, turn, n_neighbors=6, n_replace=2) for _ in range(2))
+    at_once._replace(subproblems, children)
+    alone._move_ideal(children.get("F"), children.get("CV")[:, 0] <= 0.0)
+    for k in range(n_children):
+        alone._replace(subproblems[k : k + 1], children[k : k + 1])
+    check_arrays(at_once)
+    assert at_once.pop.get("X").tolist() == alone.pop.get("X").tolist()
+    assert at_once.random_state.random() == alone.random_state.random()
+
+
+@pytest.mark.parametrize("decomposition", [PBI(), Tchebicheff()])
+def test_without_its_additions_it_is_pymoos(decomposition):
+    """One child at a time, no scaling, no limit, and no ties of neighbours or of children: the same bits."""
+    dirs = np.random.default_rng(1).dirichlet(np.ones(3), 15)
+    operators = {"crossover": SBX(eta=15, prob=1.0), "mutation": PM(eta=20, prob_var=1.0)}
+    settings: dict[str, Any] = {"n_neighbors": 6, "decomposition": decomposition} | operators
+    ours = SmoothMOEAD(dirs, smoothness=False, normalize=False, n_replace=6, batch_size=1, **settings)
+    results = [minimize(DTLZ2(n_var=6), algorithm, ("n_gen", 12), seed=1) for algorithm in (ours, MOEAD(dirs, **settings))]
+    assert np.array_equal(*(result.pop.get("X") for result in results))
+    assert np.array_equal(*(result.F for result in results))
+
+
 def test_one_range_does_not_drown_another(make_problem):
     """The compromise (1, 50) of an objective in ones and one in hundreds is found only with scaling."""
     F = [[0.0, 100.0], [2.0, 0.0], [2.0, 0.0]]
@@ -151,10 +200,69 @@ def test_mating_is_told_the_algorithm(make_problem):
     assert told == sorted(told) and told[0] == pytest.approx(0.2) and told[-1] == pytest.approx(0.8)
 
 
-def test_population_is_the_directions(make_problem):
-    problem = make_problem(3)
-    result = minimize(problem, make_algorithm("MOEAD", problem, 20), ("n_gen", 3), seed=1)
-    assert len(result.pop) == 15 and result.algorithm.evaluator.n_eval == 45
+@pytest.mark.parametrize("batch_size", [1, 4, None, 100])
+def test_a_generation_has_a_child_a_direction(batch_size, make_problem):
+    problem, seen = make_problem(3), []
+    algorithm = make_algorithm("MOEAD", problem, 20, batch_size=batch_size, callback=lambda a: seen.append(a.evaluator.n_eval))
+    result = minimize(problem, algorithm, ("n_eval", 40), seed=1)
+    assert len(result.pop) == 15 and seen == [15, 30, 45] and result.algorithm.n_gen == 4
+
+
+def elsewhere():
+    """Return operators that are not this package's."""
+    return {"crossover": SBX(vtype=float, repair=RoundingRepair()), "mutation": PM(vtype=float, repair=RoundingRepair())}
+
+
+@pytest.mark.parametrize("operators", [{}, elsewhere()], ids=["own", "elsewhere"])
+@pytest.mark.parametrize("copied", [lambda a: pickle.loads(pickle.dumps(a)), copy.deepcopy], ids=["pickled", "copied"])
+def test_a_run_goes_on_from_a_copy_within_a_generation(operators, copied, make_problem):
+    problem = make_problem(2, "constraint")
+    algorithm = make_algorithm("MOEAD", problem, 14, batch_size=4, **operators)
+    algorithm.setup(problem, termination=("n_gen", 6), seed=1)
+    for _ in range(7):  # the first population, a generation of four batches and two more batches
+        algorithm.next()
+    other = copied(algorithm)
+    assert algorithm.evaluator.n_eval == 28 + 8 and algorithm.n_gen == 3
+    F = [run.run().pop.get("F") for run in (algorithm, other)]
+    assert np.array_equal(*F) and other.evaluator.n_eval == 84
+
+
+def test_operators_from_elsewhere_are_called_as_pymoo_does(make_problem):
+    problem = make_problem()
+    assert isinstance(make_algorithm("MOEAD", problem, 10).mating, FirstChildMating)
+    algorithm = make_algorithm("MOEAD", problem, 20, **elsewhere())
+    assert type(algorithm.mating) is Mating
+    result = minimize(problem, algorithm, ("n_gen", 10), seed=1)
+    # Their own repair is heeded, which the array hook knows nothing of.
+    assert np.array_equal(result.pop.get("X"), np.rint(result.pop.get("X"))) and result.algorithm.evaluator.n_eval == 200
+
+
+def test_ask_and_tell_is_a_run(make_problem):
+    problem = make_problem()
+    algorithm = make_algorithm("MOEAD", problem, 10)
+    expected = minimize(problem, algorithm, ("n_gen", 5), seed=1).F
+    algorithm.setup(problem, termination=("n_gen", 5), seed=1)
+    while algorithm.has_next():
+        children = algorithm.ask()
+        assert len(children) == 10
+        algorithm.tell(infills=algorithm.evaluator.eval(problem, children))
+    assert np.array_equal(algorithm.result().F, expected)
+
+
+def test_parents_are_different_neighbors():
+    rng = np.random.default_rng(1)
+    neighbors = np.array([rng.permutation(9)[:4] for _ in range(6000)])
+    pop = Population.empty(9)
+    P = NeighborSelection(0.75).do(None, pop, 6000, 2, to_pop=False, neighbors=neighbors, random_state=rng)
+    assert (P[:, 0] != P[:, 1]).all() and np.array_equal(np.unique(P), np.arange(9))
+    # A quarter is drawn from all, of which (4 * 3) / (9 * 8) are neighbours by chance.
+    near = (P[:, :, None] == neighbors[:, None]).any(axis=2).all(axis=1)
+    assert near.mean() == pytest.approx(0.75 + 0.25 / 6, abs=0.02)
+    # Any of the neighbours as often, first and second.
+    places = (P[near][:, :, None] == neighbors[near][:, None]).argmax(axis=2)
+    assert np.allclose([np.bincount(column) / len(places) for column in places.T], 0.25, atol=0.025)
+    with pytest.raises(GridPathError, match="5 different parents cannot be chosen among 4"):
+        NeighborSelection().do(None, pop, 1, 5, neighbors=neighbors[:1], random_state=rng)
 
 
 def test_directions_are_checked(make_problem):
