@@ -1,4 +1,4 @@
-"""The command line: plan on a map, list the shipped maps, describe a map file."""
+"""The command line: plan on a map, list the shipped maps, describe a map file, compare algorithms in a study."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
 from pymoo_gridpath.progress import Progress
 from pymoo_gridpath.representations import REPRESENTATIONS
+from pymoo_gridpath.study.commands import add_study_commands
 
 DEFAULT_MAP = "warehouse"
 
@@ -38,8 +39,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0; 1 if no legal path was found; 2 on bad input, with one line on standard error; 130 if Ctrl-C ended the search, with
-        what was found until then written.
+        0; 1 if no legal path was found, or runs of a study failed; 2 on bad input, with one line on standard error; 130 if
+        Ctrl-C ended the search, with what was found until then written.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -140,6 +141,8 @@ def _parser() -> argparse.ArgumentParser:
     info.set_defaults(run=_info)
     info.add_argument("map", metavar="MAP", help="map file or name of a shipped map")
     _add_map_options(info)
+
+    add_study_commands(commands)
     return parser
 
 

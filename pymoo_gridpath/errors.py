@@ -46,6 +46,36 @@ class MapError(GridPathError):
         return type(self), (self.path, self.message, self.line)
 
 
+class StudyError(GridPathError):
+    """A comparison study that cannot be run as it is described.
+
+    Parameters
+    ----------
+    message : str
+        What was wrong and what was expected.
+    where : sequence of str and int
+        Where in the study: the keys and indices that lead there, such as ``("problems", 0, "random")``.
+    path : str or path-like, optional
+        The file of the study.
+    line : int, optional
+        The line of the file, counted from 1.
+    """
+
+    def __init__(self, message: str, where=(), path=None, line: int | None = None):
+        self.message = message
+        self.where = tuple(where)
+        self.path = None if path is None else str(path)
+        self.line = line
+        if self.path is not None:
+            place = self.path if line is None else f"{self.path}, line {line}"
+        else:
+            place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in self.where).lstrip(".")
+        super().__init__(f"{place}: {message}" if place else message)
+
+    def __reduce__(self):
+        return type(self), (self.message, self.where, self.path, self.line)
+
+
 class CapabilityError(GridPathError):
     """An algorithm was asked for something that it cannot do."""
 

@@ -1,0 +1,29 @@
+"""Comparison studies: which problems, algorithms, seeds and budget; running them anywhere; what came of it, with statistics."""
+
+from importlib import import_module
+
+# Imported where they are first used, since the command line reads this package for every command.
+_HOMES = {
+    "AlgorithmSpec": "specification.algorithm",
+    "History": "record",
+    "Outcome": "runner",
+    "ProblemSpec": "specification.problem",
+    "QueryRange": "specification.problem",
+    "RandomFamily": "specification.problem",
+    "RunRecord": "record",
+    "Store": "store",
+    "Study": "specification.study",
+    "dask_executor": "executors",
+    "load_study": "specification.toml_file",
+    "local_processes": "executors",
+    "run_study": "runner",
+    "write_report": "report",
+}
+
+__all__ = sorted(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll]
+
+
+def __getattr__(name: str):
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

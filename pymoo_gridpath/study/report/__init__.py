@@ -1,0 +1,85 @@
+"""The report of a study: tables, figures, and one page that collects them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from pymoo_gridpath.decision.export import write_whole
+from pymoo_gridpath.errors import GridPathError
+
+__all__ = ["write_report"]
+
+# Folder of the figures, and their files, which a later report of fewer groups would leave behind.
+_FIGURES = "figures"
+_STALE = ("ratios*", "convergence-*", "attainment-*", "fronts-*", "ranks-*")
+
+
+def write_report(
+    folder: str | os.PathLike[str],
+    output: str | os.PathLike[str] | None = None,
+    target: float | None = None,
+    formats: str | Sequence[str] = ("png", "pdf"),
+    times: bool = True,
+) -> list[Path]:
+    """Write the report of a study from what its folder holds, whether all runs are finished or not.
+
+    Parameters
+    ----------
+    folder : path-like
+        Of the study; it is only read, but for the output if that stands in it.
+    output : path-like, optional
+        Where the files go; by default ``report`` in the folder.
+    target : float, optional
+        The hypervolume ratio that "evaluations and seconds to target" ask for, by default the study's.
+    formats : sequence of {"png", "pdf", "svg"}, default ("png", "pdf")
+        Of the figures' files. The page holds its own.
+    times : bool, default True
+        Whether to report seconds, machines and versions. Without them, reports of the same study that ran elsewhere are equal.
+
+    Returns
+    -------
+    list of pathlib.Path
+        ``index.html`` (everything on one page), ``report.md``, ``tables.tex``, ``runs.csv``, ``problems.csv``, ``summary.csv``,
+        ``tests.csv``, and the figures. The same runs give the same bytes.
+
+    Raises
+    ------
+    GridPathError
+        If the folder holds no study, an argument is wrong, or a file cannot be written.
+    """
+    # Imported here, so that the commands that do not report need not wait for matplotlib.
+    from pymoo_gridpath.study.report.blocks import Picture, latex, markdown
+    from pymoo_gridpath.study.report.contents import Contents
+    from pymoo_gridpath.study.report.csv_files import csv_files
+    from pymoo_gridpath.study.report.drawing import draw_all
+    from pymoo_gridpath.study.report.figure_style import check_formats
+    from pymoo_gridpath.study.report.page import page
+    from pymoo_gridpath.study.report.results import collect
+    from pymoo_gridpath.study.store import Store
+
+    forms = check_formats(formats)
+    results = collect(Store(folder), target)
+    directory = Path(folder) / "report" if output is None else Path(output)
+    figures = directory / _FIGURES
+    try:
+        figures.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"{figures}: the folder cannot be made ({error.strerror}), expected a writable place"
+        raise GridPathError(message) from None
+    contents = Contents(results, times)
+    blocks = draw_all(contents.blocks(), forms)
+    for pattern in _STALE:
+        for form in ("png", "pdf", "svg"):
+            for file in figures.glob(f"{pattern}.{form}"):
+                file.unlink()
+    texts = {
+        "index.html": page(blocks, f"Study {results.plan.name}"),
+        "report.md": markdown(blocks, _FIGURES),
+        "tables.tex": latex(blocks),
+        **csv_files(results, contents.families, times),
+    }
+    written = [write_whole(directory / name, text.encode()) for name, text in texts.items()]
+    pictures = [block for block in blocks if isinstance(block, Picture)]
+    return written + [write_whole(figures / f"{p.name}.{form}", data) for p in pictures for form, data in p.files.items()]

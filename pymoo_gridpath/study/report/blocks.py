@@ -1,0 +1,111 @@
+"""What a report is made of, in no format yet, and its text in Markdown and LaTeX."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from pymoo_gridpath.study.report.tables import Table, escape_latex, escape_markdown
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading of level 1 (the title) to 3."""
+
+    text: str
+    level: int = 2
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Caution:
+    """Sentences that a reader must not miss, one each."""
+
+    texts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure that is still to be drawn.
+
+    Attributes
+    ----------
+    name : str
+        Of its files.
+    caption : str
+    draw : callable
+        Returns the figure, or None if there is nothing to draw.
+    otherwise : str
+        What to say then.
+    """
+
+    name: str
+    caption: str
+    draw: Callable[[], Figure | None]
+    otherwise: str
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawn figure: its caption, what a page shows, and its files by format."""
+
+    name: str
+    caption: str
+    png: bytes
+    files: dict[str, bytes]
+
+
+@dataclass(frozen=True)
+class Fold:
+    """Blocks that a page shows on demand."""
+
+    title: str
+    blocks: tuple[Block, ...]
+
+
+Block = Heading | Text | Caution | Table | Drawing | Picture | Fold
+
+
+def markdown(blocks: Iterable[Block], folder: str) -> str:
+    """Return blocks in Markdown; pictures are linked as PNG files of a folder."""
+    return "\n".join(_markdown(block, folder) for block in blocks)
+
+
+def _markdown(block: Block, folder: str) -> str:
+    if isinstance(block, Heading):
+        return f"{'#' * block.level} {escape_markdown(block.text)}\n"
+    if isinstance(block, Text):
+        return f"{escape_markdown(block.text)}\n"
+    if isinstance(block, Caution):
+        return "\n".join(f"> **Caution.** {escape_markdown(text)}\n" for text in block.texts)
+    if isinstance(block, Table):
+        return block.markdown()
+    if isinstance(block, Picture):
+        caption = escape_markdown(block.caption)
+        form = "png" if "png" in block.files else next(iter(block.files), None)
+        return f"{caption}\n" if form is None else f"![{block.name}]({folder}/{block.name}.{form})\n\n{caption}\n"
+    if isinstance(block, Fold):
+        return f"**{escape_markdown(block.title)}**\n\n{markdown(block.blocks, folder)}"
+    raise TypeError(f"a drawing has no text before it is drawn: {block.name}")
+
+
+def latex(blocks: Iterable[Block]) -> str:
+    """Return the tables of blocks in LaTeX, and their warnings as comments."""
+    parts = ["% Tables for \\input{tables.tex}; they need \\usepackage{booktabs} and the T1 font encoding.\n"]
+    for block in blocks:
+        if isinstance(block, Heading):
+            parts.append(f"% -- {' '.join(block.text.splitlines())}\n")
+        elif isinstance(block, Caution):
+            parts += [f"% Caution. {escape_latex(text)}\n" for text in block.texts]
+        for inner in block.blocks if isinstance(block, Fold) else (block,):
+            if isinstance(inner, Table) and inner.for_papers:
+                parts.append(inner.latex())
+    return "\n".join(parts)

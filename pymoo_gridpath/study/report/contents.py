@@ -1,0 +1,202 @@
+"""What stands in a report and in which order."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from pymoo_gridpath.study.report import settings, summary
+from pymoo_gridpath.study.report.blocks import Block, Caution, Drawing, Fold, Heading, Text
+from pymoo_gridpath.study.report.comparisons import TESTED, Comparison, compare, compare_each, could_tell
+from pymoo_gridpath.study.report.csv_files import Family
+from pymoo_gridpath.study.report.figure_style import AlgorithmStyle, algorithm_styles
+from pymoo_gridpath.study.report.front_plots import plot_attainment, plot_fronts
+from pymoo_gridpath.study.report.plots import plot_convergence, plot_ranks, plot_ratios
+from pymoo_gridpath.study.report.results import Results
+
+# Beyond these numbers, tables and figures of single problems or groups would bury the page.
+_MOST_PROBLEMS = 40
+_MOST_GROUPS = 8
+_GROUPS_A_FIGURE = 12
+
+
+class Contents:
+    """The blocks of a report, and the tests among them.
+
+    Parameters
+    ----------
+    results : Results
+    times : bool
+        Whether seconds, machines and versions are part of it.
+
+    Attributes
+    ----------
+    families : list of Family
+        All tests.
+    """
+
+    def __init__(self, results: Results, times: bool):
+        self.results = results
+        self.times = times
+        labels = results.algorithms
+        self.styles: list[AlgorithmStyle] = algorithm_styles(labels, [results.is_exact(k) for k in range(len(labels))])
+        self.families: list[Family] = []
+
+    def blocks(self) -> Iterator[Block]:
+        """Yield the blocks; drawings are drawn one at a time by whoever takes them."""
+        results = self.results
+        yield Heading(f"Study {results.plan.name}", 1)
+        if not any(run.finished for run in results.runs):
+            state = settings.state_sentence(results)
+            yield Caution((f"No run of this study is finished, so that there is nothing to report: {state}",))
+            yield from settings.unfinished_blocks(results)
+            return
+        yield Text(settings.state_sentence(results))
+        cautions = settings.general_cautions(results)
+        if cautions:
+            yield Caution(tuple(cautions))
+        yield from settings.settings_blocks(results, self.times)
+        yield from self._overview()
+        names = slugs(results.groups)
+        for group, problems in results.groups.items():
+            yield from self._group(group, names[group], problems)
+        yield from settings.unfinished_blocks(results)
+        yield from settings.definition_blocks(results, self.times)
+        if self.times:
+            yield from settings.origin_blocks(results)
+
+    def _overview(self) -> Iterator[Block]:
+        """Yield what covers all groups: their final ratios and, of several, the comparison across all problems."""
+        results, groups = self.results, self.results.groups
+        yield Heading("Overview")
+        everything = list(range(len(results.plan.problems)))
+        against = summary.reference_phrase(results, everything)
+        if len(groups) > 1:
+            what = f"Median hypervolume ratio to {against}, over the finished runs of each group."
+            yield summary.matrix_table(results, groups, "overview", what, "group")
+        names = list(groups)
+        for begin in range(0, len(names), _GROUPS_A_FIGURE):
+            shown = {name: groups[name] for name in names[begin : begin + _GROUPS_A_FIGURE]}
+            number = "" if len(names) <= _GROUPS_A_FIGURE else f"-{begin // _GROUPS_A_FIGURE + 1}"
+            problems = [problem for members in shown.values() for problem in members]
+            caption = (
+                f"Hypervolume ratio of the final front to {summary.reference_phrase(results, problems)}: every "
+                "finished run is a point; the box reaches from the lower to the upper quartile, the thick line is the median."
+            )
+            yield Drawing(f"ratios{number}", caption, partial(plot_ratios, results, shown, self.styles), "")
+        if len(groups) > 1:
+            yield from self._tests("study", "all problems", "all", "across all problems", everything)[1]
+
+    def _group(self, group: str, name: str, problems: list[int]) -> Iterator[Block]:
+        results, place = self.results, f"on {group}"
+        comparison, tests = self._tests("group", group, name, place, problems)
+        yield Heading(group)
+        yield summary.quality_table(results, problems, name, place, comparison)
+        yield summary.effort_table(results, problems, name, place, self.times)
+        if 1 < len(problems) <= _MOST_PROBLEMS:
+            rows = {results.plan.problems[k].label: [k] for k in problems}
+            what = f"Median hypervolume ratio on each problem of {group}, to {summary.reference_phrase(results, problems)}."
+            yield Fold("Each problem", (summary.matrix_table(results, rows, f"{name}-problems", what, "problem"),))
+        elif len(problems) > 1:
+            yield Text("The numbers of each problem stand in summary.csv.")
+        if list(results.groups).index(group) < _MOST_GROUPS:
+            yield from self._drawings(group, name, problems)
+        else:
+            yield Text(f"Figures are drawn for the first {_MOST_GROUPS} groups.")
+        yield from tests
+
+    def _drawings(self, group: str, name: str, problems: list[int]) -> Iterator[Block]:
+        results, label = self.results, self.results.plan.problems[problems[0]].label
+        over = "runs" if len(problems) == 1 else f"runs on all {len(problems)} problems"
+        caption = (
+            f"Convergence on {group}: median (line) and quartiles (band) over the finished {over}. Ratios are to "
+            f"{summary.reference_phrase(results, problems)}; lengths are over the least length on that front; legal members "
+            "are those of the population that are legal paths. What is far off in the first tenth is cut, and there is no "
+            "line where half of the runs have no legal path to measure."
+        )
+        draw = partial(plot_convergence, results, problems, self.styles)
+        yield Drawing(f"convergence-{name}", caption, draw, f"No run on {group} has a history to draw.")
+        first = label if len(problems) == 1 else f"{label}, the first of the {len(problems)} problems of {group}"
+        against = summary.reference_phrase(results, problems[:1])
+        caption = (
+            f"Empirical attainment surfaces on {first}, beside {against}: the border of what half of the runs attain, "
+            "what a quarter and three quarters do, and what any and all do. Runs without a legal path attain nothing."
+        )
+        n_obj = len(results.plan.problems[problems[0]].spec["objectives"])
+        why = "no run has a legal path" if n_obj == 2 else f"they are drawn for two objectives, and it has {n_obj}"
+        draw = partial(plot_attainment, results, problems[0], self.styles)
+        yield Drawing(f"attainment-{name}", caption, draw, f"No attainment surfaces on {first}: {why}.")
+        caption = (
+            f"Merged fronts of all runs of each algorithm on {first}, beside {against}, and how many of its points they hold."
+        )
+        if n_obj > 2:
+            caption += f" Of {n_obj} objectives the first two are shown."
+        why = "no run has a legal path" if n_obj > 1 else "it has one objective"
+        draw = partial(plot_fronts, results, problems[0], self.styles)
+        yield Drawing(f"fronts-{name}", caption, draw, f"No merged fronts on {first}: {why}.")
+
+    def _tests(self, level: str, scope: str, name: str, place: str, problems: Sequence[int]) -> tuple[Comparison, list[Block]]:
+        """Return the comparison of hypervolume ratios on some problems, and the tests of all measures; keep them."""
+        comparisons, parts = [], []
+        for measure in TESTED:
+            comparison = compare(self.results, problems, measure)
+            self.families.append(Family(level, [(scope, comparison)]))
+            comparisons.append(comparison)
+            parts.append(list(self._tests_of(comparison, name, place)))
+            if level == "group" and len(problems) > 1:
+                parts[-1] += self._each(problems, measure, name, place)
+        main, *others = parts
+        cautions = comparisons[0].warnings
+        if cautions:
+            main.insert(0, Caution(tuple(f"Tests {place}: {caution}" for caution in cautions)))
+        for measure, other in zip(list(TESTED)[1:], others, strict=True):
+            if other:
+                main.append(Fold(f"The same tests of the {TESTED[measure][0]} {place}", tuple(other)))
+        return comparisons[0], [Heading(f"Tests {place}", 3), *main] if main else []
+
+    def _tests_of(self, comparison: Comparison, name: str, place: str) -> Iterator[Block]:
+        if comparison.friedman is not None:
+            yield summary.ranks_table(self.results, comparison, name, place)
+            if comparison.measure == "ratio":
+                yield self._ranks_drawing(comparison, name, place)
+        if comparison.pairs:
+            yield summary.pairs_table(self.results, comparison, name, place)
+
+    def _ranks_drawing(self, comparison: Comparison, name: str, place: str) -> Drawing:
+        assert comparison.friedman is not None
+        labels = [self.results.algorithms[k] for k in comparison.algorithms]
+        caption = (
+            f"Average ranks by the median hypervolume ratio over {comparison.n_blocks} problems {place}, 1 the best. "
+            "A bar joins algorithms whose ranks do not differ significantly. " + summary.friedman_sentence(comparison)
+        )
+        title = summary.friedman_sentence(comparison).split(" Nemenyi")[0]
+        return Drawing(f"ranks-{name}", caption, partial(plot_ranks, comparison.friedman, labels, title), "")
+
+    def _each(self, problems: Sequence[int], measure: str, name: str, place: str) -> list[Block]:
+        """Return the tests of single problems, if any could tell algorithms apart; keep them."""
+        each = compare_each(self.results, problems, measure)
+        labels = [self.results.plan.problems[k].label for k in problems]
+        self.families.append(Family("problem", list(zip(labels, each, strict=True))))
+        if could_tell(each):
+            return [summary.each_table(self.results, each, name, place)]
+        count = sum(len(comparison.pairs) for comparison in each)
+        if measure != "ratio" or not count:
+            return []
+        words = f"with so few seeds, none of {count} tests could be significant after Holm's correction"
+        return [Caution((f"Tests of single problems {place}: {words}.",))]
+
+
+def slugs(names: Sequence[str] | dict) -> dict[str, str]:
+    """Return for each name one that serves in file names and LaTeX labels, all different whatever the case of letters."""
+    found: dict[str, str] = {}
+    taken: set[str] = set()
+    for name in names:
+        base = re.sub(r"[^A-Za-z0-9.-]+", "-", name).strip("-.")[:60] or "group"
+        slug, number = base, 1
+        while slug.lower() in taken:
+            number += 1
+            slug = f"{base}-{number}"
+        taken.add(slug.lower())
+        found[name] = slug
+    return found

@@ -1,0 +1,35 @@
+"""Drawings made into pictures, one at a time so that few figures are in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from pymoo_gridpath.study.report.blocks import Block, Drawing, Picture, Text
+from pymoo_gridpath.study.report.figure_style import rendered, report_style
+
+
+def draw_all(blocks: Iterable[Block], formats: Sequence[str]) -> list[Block]:
+    """Return blocks with every drawing replaced by its picture, or by what to say if there is nothing to draw.
+
+    Parameters
+    ----------
+    blocks : iterable of Block
+    formats : sequence of {"png", "pdf", "svg"}
+        Of the files.
+    """
+    return [_drawn(block, formats) if isinstance(block, Drawing) else block for block in blocks]
+
+
+def _drawn(drawing: Drawing, formats: Sequence[str]) -> Block:
+    with report_style():
+        figure = drawing.draw()
+        if figure is None:
+            return Text(drawing.otherwise)
+        # Laid out once for all formats, which takes as long as drawing.
+        engine = figure.get_layout_engine()
+        if engine is not None:
+            engine.execute(figure)
+            figure.set_layout_engine("none")
+        # The page shows the PNG, whichever files are asked for.
+        files = {form: rendered(figure, form) for form in dict.fromkeys(["png", *formats])}
+    return Picture(drawing.name, drawing.caption, files["png"], {form: files[form] for form in formats})

@@ -1,0 +1,237 @@
+"""Measures of a run: how near its front comes to the front that it is measured against, and how soon.
+
+They are functions of arrays. All objectives are minimised and only points of legal paths count.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import moocore
+import numpy as np
+from scipy.spatial import KDTree
+
+#: By which share of an objective's largest size two values may differ and still be equal.
+SAME = 1e-9
+
+# The reference point lies this share of the front's range beyond its nadir.
+_MARGIN = 0.1
+
+# Decimals of a ratio, beyond which there is only the rounding of sums.
+_DECIMALS = 12
+
+
+class ReferenceFront:
+    """The front of a problem that runs are measured against: the exact one, or the best that is known.
+
+    Parameters
+    ----------
+    points : numpy.ndarray, shape (K, n_obj)
+        Mutually non-dominated; K may be 0 if no legal path is known.
+    exact : bool
+        Whether this is the whole Pareto front of the problem.
+
+    Attributes
+    ----------
+    points : numpy.ndarray, shape (K, n_obj)
+        In lexicographic order, no point twice.
+    exact : bool
+    low, span : numpy.ndarray, shape (n_obj,)
+        Ideal point of the front, and its range, by which objectives are normalised. An objective without a range, such as
+        those of a single point, counts in its own unit.
+    """
+
+    def __init__(self, points: np.ndarray, exact: bool):
+        self.points = merge_fronts([np.asarray(points, dtype=float)])
+        self.exact = exact
+        if not len(self.points):
+            return
+        self.low = self.points.min(axis=0)
+        self.scale = np.maximum(np.abs(self.points).max(axis=0), np.finfo(float).tiny)
+        ranges = np.ptp(self.points, axis=0)
+        self.span = np.where(ranges > SAME * self.scale, ranges, 1.0)
+        self._corner = np.full(len(self.low), 1.0 + _MARGIN)
+        self._normalised = self.normalise(self.points)
+        self._volume: Any = moocore.hypervolume(self._normalised, ref=self._corner)
+        self._tree = KDTree(self.points / self.scale)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def normalise(self, F: np.ndarray) -> np.ndarray:
+        """Return points with the front's ideal point at 0 and, where the front has a range, its nadir at 1."""
+        return (np.asarray(F, dtype=float) - self.low) / self.span
+
+    def hypervolume_ratio(self, F: np.ndarray) -> float:
+        """Return the hypervolume of points over that of the front.
+
+        The reference point lies a tenth of the front's range beyond its nadir in each objective. Where the front is a single
+        point, points that reach it have 1 and any other 0. Without points the ratio is 0.
+
+        Parameters
+        ----------
+        F : numpy.ndarray, shape (N, n_obj)
+        """
+        if not len(F) or not len(self):
+            return 0.0
+        if len(self) == 1:
+            return float(self._reach_point(F).any())
+        volume: Any = moocore.hypervolume(self.normalise(F), ref=self._corner)
+        return round(volume / self._volume, _DECIMALS)
+
+    def hypervolume_ratios(self, points: np.ndarray, first: np.ndarray, last: np.ndarray, n_records: int) -> np.ndarray:
+        """Return the ratio at each record of a history.
+
+        Parameters
+        ----------
+        points : numpy.ndarray, shape (P, n_obj)
+        first, last : numpy.ndarray of int, shape (P,)
+            From which to which record, inclusive, a point stood in the front. The points of one record are mutually
+            non-dominated.
+        n_records : int
+
+        Returns
+        -------
+        numpy.ndarray, shape (n_records,)
+        """
+        if not len(points) or not len(self):
+            return np.zeros(n_records)
+        if len(self) == 1:
+            reaching = np.flatnonzero(self._reach_point(points))
+            changes = np.zeros(n_records + 1)
+            np.add.at(changes, first[reaching], 1.0)
+            np.add.at(changes, last[reaching] + 1, -1.0)
+            return np.minimum(np.cumsum(changes)[:n_records], 1.0)
+        F = self.normalise(points)
+        if F.shape[1] == 2:
+            volumes = _areas(F, first, last, n_records, self._corner)
+        else:
+            volumes = _volumes(F, first, last, n_records, self._corner)
+        return np.round(volumes / self._volume, _DECIMALS)
+
+    def igd_plus(self, F: np.ndarray) -> float:
+        """Return the mean distance, in normalised objectives, by which points of the front are missed; ``inf`` without points.
+
+        References
+        ----------
+        Ishibuchi, Masuda, Tanigaki and Nojima (2015), Modified distance calculation in generational distance and inverted
+        generational distance.
+        """
+        if not len(F) or not len(self):
+            return np.inf
+        return float(moocore.igd_plus(self.normalise(F), ref=self._normalised))
+
+    def share_found(self, F: np.ndarray) -> float:
+        """Return the share of the front's points that are among the points, up to `SAME` of each objective's size."""
+        if not len(F) or not len(self):
+            return 0.0
+        nearest: Any = self._tree.query(np.asarray(F, dtype=float) / self.scale, p=np.inf, distance_upper_bound=SAME)
+        distances, indices = nearest
+        return len(np.unique(indices[np.isfinite(distances)])) / len(self)
+
+    def exceeded_by(self, F: np.ndarray) -> bool:
+        """Whether some point dominates one of the front, or lies where no point of the front does."""
+        if not len(F) or not len(self):
+            return False
+        both = merge_fronts([self.points, np.asarray(F, dtype=float)])
+        distances, _ = self._tree.query(both / self.scale, p=np.inf, distance_upper_bound=2 * SAME)
+        return not np.isfinite(distances).all()
+
+    def _reach_point(self, F: np.ndarray) -> np.ndarray:
+        """Return which points are as good as the single point of the front in every objective."""
+        return (np.asarray(F) <= self.points[0] + SAME * self.scale).all(axis=1)
+
+
+def merge_fronts(fronts: list[np.ndarray]) -> np.ndarray:
+    """Return the non-dominated points of several fronts, each once, in lexicographic order.
+
+    Values of an objective that differ by no more than `SAME` of its largest size count as equal: sums of the same cells
+    in another order would otherwise make false points.
+
+    Parameters
+    ----------
+    fronts : list of numpy.ndarray, each of shape (n, n_obj)
+        At least one, which may be empty.
+
+    Returns
+    -------
+    numpy.ndarray, shape (K, n_obj)
+    """
+    F = np.concatenate(fronts)
+    if not len(F):
+        return F
+    equal = np.column_stack([_snap(column) for column in F.T])
+    _, kept = np.unique(equal, axis=0, return_index=True)
+    return F[kept[moocore.is_nondominated(equal[kept])]]
+
+
+def _snap(values: np.ndarray) -> np.ndarray:
+    """Return values of which those that follow one another closely are made equal to the least of them."""
+    order = np.argsort(values, kind="stable")
+    ascending = values[order]
+    begins = np.diff(ascending, prepend=-np.inf) > SAME * np.abs(values).max()
+    snapped = np.empty_like(values)
+    snapped[order] = ascending[begins][np.cumsum(begins) - 1]
+    return snapped
+
+
+def _areas(F: np.ndarray, first: np.ndarray, last: np.ndarray, n_records: int, corner: np.ndarray) -> np.ndarray:
+    """Return the areas dominated by the records' fronts of two objectives, all at once."""
+    F = np.minimum(F, corner)
+    order = np.argsort(F[:, 0], kind="stable")
+    stays = last[order] - first[order] + 1
+    point = np.repeat(order, stays)
+    record = first[point] + np.arange(len(point)) - np.repeat(np.cumsum(stays) - stays, stays)
+    # By record, and within each by the first objective: a front's second objective then falls from point to point.
+    by_record = np.argsort(record, kind="stable")
+    point, record = point[by_record], record[by_record]
+    right = np.append(F[point[1:], 0], corner[0])
+    right[np.append(record[1:] != record[:-1], True)] = corner[0]
+    strips = (right - F[point, 0]) * (corner[1] - F[point, 1])
+    return np.bincount(record, weights=strips, minlength=n_records)
+
+
+def _volumes(F: np.ndarray, first: np.ndarray, last: np.ndarray, n_records: int, corner: np.ndarray) -> np.ndarray:
+    """Return the hypervolumes dominated by the records' fronts; those that do not change are computed once."""
+    changed = np.zeros(n_records + 1, dtype=bool)
+    changed[0] = changed[first] = changed[last + 1] = True
+    begins = np.flatnonzero(changed[:n_records])
+    values = np.zeros(len(begins))
+    for i, k in enumerate(begins):
+        front = F[(first <= k) & (k <= last)]
+        if len(front):
+            values[i] = moocore.hypervolume(front, ref=corner)
+    return np.repeat(values, np.diff(np.append(begins, n_records)))
+
+
+def first_reaching(ratios: np.ndarray, target: float) -> int | None:
+    """Return the first record whose ratio is at least the target, None if there is none."""
+    reached = np.flatnonzero(ratios >= target)
+    return int(reached[0]) if len(reached) else None
+
+
+def quartiles(values: np.ndarray, axis: int = 0) -> np.ndarray:
+    """Return lower quartile, median and upper quartile, interpolated linearly; values may be infinite.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        Without NaN; ``inf`` stands for something that was not reached and makes infinite what lies between it and a number.
+    axis : int, default 0
+
+    Returns
+    -------
+    numpy.ndarray, shape (3, ...)
+        NaN if there are no values.
+    """
+    values = np.sort(np.moveaxis(np.asarray(values, dtype=float), axis, 0), axis=0)
+    if not len(values):
+        return np.full((3, *values.shape[1:]), np.nan)
+    places = np.array([0.25, 0.5, 0.75]) * (len(values) - 1)
+    below = np.floor(places).astype(int)
+    above = np.ceil(places).astype(int)
+    low, high = values[below], values[above]
+    weight = (places - below).reshape(3, *[1] * (values.ndim - 1))
+    with np.errstate(invalid="ignore"):
+        between = low + weight * (high - low)
+    return np.where(weight == 0.0, low, np.where(np.isinf(high), high, between))

@@ -1,0 +1,302 @@
+"""What a store holds of a study, measured: a result for each planned run, and a front to measure against for each problem."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.study.plan import Plan, PlannedRun, is_exact
+from pymoo_gridpath.study.record import DamagedRecordError, History, RunRecord
+from pymoo_gridpath.study.report.measures import ReferenceFront, first_reaching, merge_fronts
+from pymoo_gridpath.study.store import Store
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """How a run converged, one entry a record of its history.
+
+    Attributes
+    ----------
+    evaluations, ratio, length, legal : numpy.ndarray, shape (T,)
+        Evaluations spent; hypervolume ratio; least length over that of the reference front, ``inf`` without a legal path and
+        NaN where length is not an objective; share of the population's members that are legal paths.
+    """
+
+    evaluations: np.ndarray
+    ratio: np.ndarray
+    length: np.ndarray
+    legal: np.ndarray
+
+
+@dataclass(eq=False)
+class RunResult:
+    """A planned run of an algorithm, and its measures if it is finished.
+
+    Attributes
+    ----------
+    key : str
+    problem, algorithm : int
+        Indices in the plan.
+    seed : int
+    status : {"finished", "failed", "missing", "damaged"}
+    message : str
+        Of failed runs the traceback, of incomplete exact fronts what the search says.
+    complete : bool
+        Whether the front of an exact run is whole; True for others.
+    F : numpy.ndarray or None, shape (N, n_obj)
+        Its legal non-dominated points, kept for the first problem of each group.
+    ratio, igd_plus, share : float
+        NaN unless finished, as all numbers that follow.
+    turn : float
+        Mean total turn of the paths of its front in degrees, ``inf`` if there is none.
+    n_points, n_eval, n_gen, seconds : float
+    evaluations_to_target, seconds_to_target : float
+        ``inf`` if the target was not reached.
+    curve : Curve or None
+    """
+
+    key: str
+    problem: int
+    algorithm: int
+    seed: int
+    status: str = "missing"
+    message: str = ""
+    complete: bool = True
+    F: np.ndarray | None = None
+    ratio: float = math.nan
+    igd_plus: float = math.nan
+    share: float = math.nan
+    turn: float = math.nan
+    n_points: float = math.nan
+    n_eval: float = math.nan
+    n_gen: float = math.nan
+    seconds: float = math.nan
+    evaluations_to_target: float = math.nan
+    seconds_to_target: float = math.nan
+    curve: Curve | None = None
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run ended and has measures."""
+        return self.status == "finished"
+
+    @property
+    def feasible(self) -> bool:
+        """Whether it ended with a legal path."""
+        return self.n_points > 0
+
+
+@dataclass(frozen=True, eq=False)
+class ProblemReference:
+    """The front of a problem, and why it is not the exact one if so.
+
+    Attributes
+    ----------
+    front : ReferenceFront
+    reason : str
+        Empty if the front is exact.
+    seconds : float
+        What the exact front took; NaN if there was no such run.
+    exceeded : bool
+        Whether runs found legal points beyond the front, which overridden representations or obstacle rules allow.
+    """
+
+    front: ReferenceFront
+    reason: str
+    seconds: float
+    exceeded: bool
+
+
+@dataclass(eq=False)
+class Results:
+    """A study as measured.
+
+    Attributes
+    ----------
+    plan : Plan
+    target : float
+    runs : list of RunResult
+        In the order of the plan.
+    references : list of ProblemReference
+        One a problem.
+    machines, versions : collections.Counter
+        How many runs were made on which machine and with which versions, as JSON texts.
+    """
+
+    plan: Plan
+    target: float
+    runs: list[RunResult] = field(default_factory=list)
+    references: list[ProblemReference] = field(default_factory=list)
+    machines: Counter = field(default_factory=Counter)
+    versions: Counter = field(default_factory=Counter)
+
+    def __post_init__(self):
+        self._cells: dict[tuple[int, int], list[RunResult]] | None = None
+
+    @property
+    def groups(self) -> dict[str, list[int]]:
+        """The problems of each group, in the order of the plan."""
+        groups: dict[str, list[int]] = {}
+        for index, problem in enumerate(self.plan.problems):
+            groups.setdefault(problem.group, []).append(index)
+        return groups
+
+    @property
+    def algorithms(self) -> list[str]:
+        """The labels of the algorithms."""
+        return [algorithm.label for algorithm in self.plan.algorithms]
+
+    def is_exact(self, algorithm: int) -> bool:
+        """Whether an algorithm is the exact front, which draws no random number."""
+        return is_exact(self.plan.algorithms[algorithm].spec)
+
+    def planned(self, algorithm: int, problems: Sequence[int]) -> list[RunResult]:
+        """Return the runs of an algorithm on some problems, whatever became of them."""
+        if self._cells is None:
+            self._cells = {}
+            for run in self.runs:
+                self._cells.setdefault((run.problem, run.algorithm), []).append(run)
+        return [run for problem in problems for run in self._cells.get((problem, algorithm), [])]
+
+    def finished(self, algorithm: int, problems: Sequence[int]) -> list[RunResult]:
+        """Return the finished runs of an algorithm on some problems."""
+        return [run for run in self.planned(algorithm, problems) if run.finished]
+
+    def values(self, measure: str, algorithm: int, problems: Sequence[int]) -> np.ndarray:
+        """Return a measure of the finished runs of an algorithm on some problems."""
+        return np.array([getattr(run, measure) for run in self.finished(algorithm, problems)], dtype=float)
+
+    def with_status(self, *status: str) -> list[RunResult]:
+        """Return the runs of a status."""
+        return [run for run in self.runs if run.status in status]
+
+
+def collect(store: Store, target: float | None = None) -> Results:
+    """Read and measure the runs of a study.
+
+    Parameters
+    ----------
+    store : Store
+    target : float, optional
+        The hypervolume ratio that "to target" asks for; by default the plan's.
+
+    Raises
+    ------
+    GridPathError
+        If there is no plan, or the target is not above 0.
+    """
+    plan = store.read_plan()
+    results = Results(plan, plan.target if target is None else target)
+    if not results.target > 0.0:
+        raise GridPathError(f"target is {target}, expected a hypervolume ratio above 0")
+    by_problem: list[list[PlannedRun]] = [[] for _ in plan.problems]
+    for run in plan.runs:
+        by_problem[run.problem].append(run)
+    keep = {problems[0] for problems in results.groups.values()}
+    measured: dict[str, RunResult] = {}
+    # One problem at a time, so that no more histories are in memory than it has runs.
+    for problem, runs in enumerate(by_problem):
+        records = {run.key: _read(store, run.key) for run in runs}
+        _count_origins(results, [record for record, _ in records.values() if record is not None])
+        wanted = plan.problems[problem].reference
+        if wanted is not None and wanted not in records:
+            records[wanted] = _read(store, wanted)
+        reference = _reference(plan, problem, records)
+        results.references.append(reference)
+        for run in runs:
+            if run.algorithm is not None:
+                record, status = records[run.key]
+                result = RunResult(run.key, run.problem, run.algorithm, run.seed, status)
+                if record is not None:
+                    _measure(result, record, reference.front, results.target, keep_front=problem in keep)
+                measured[run.key] = result
+    results.runs = [measured[run.key] for run in plan.runs if run.algorithm is not None]
+    return results
+
+
+def _read(store: Store, key: str) -> tuple[RunRecord | None, str]:
+    """Return a record, if there is one, and its status."""
+    if not store.path(key).exists():
+        return None, "missing"
+    try:
+        record = store.read(key)
+    except DamagedRecordError:
+        return None, "damaged"
+    return record, record.status
+
+
+def _count_origins(results: Results, records: list[RunRecord]) -> None:
+    for record in records:
+        results.machines[json.dumps(record.machine, sort_keys=True)] += 1
+        results.versions[json.dumps(record.versions, sort_keys=True)] += 1
+
+
+def _reference(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | None, str]]) -> ProblemReference:
+    """Return the exact front of a problem, or the merged front of all runs and why."""
+    planned = plan.problems[problem]
+    exact, status = records.get(planned.reference or "", (None, "missing"))
+    seconds = exact.seconds if exact is not None else math.nan
+    fronts = [record.F for record, status in records.values() if record is not None and status == "finished" and len(record.F)]
+    if exact is not None and status == "finished" and exact.complete:
+        front = ReferenceFront(exact.F, exact=True)
+        return ProblemReference(front, "", seconds, bool(fronts) and front.exceeded_by(np.concatenate(fronts)))
+    if planned.reference is None:
+        reason = "the study asks for no exact front of this problem, or it has none"
+    elif exact is None:
+        reason = f"the run of the exact front is {status}"
+    elif status == "failed":
+        reason = f"the run of the exact front failed: {gist(exact.message)}"
+    else:
+        reason = f"the exact front is not complete: {gist(exact.message)}"
+    empty = np.empty((0, len(planned.spec["objectives"])))
+    return ProblemReference(ReferenceFront(merge_fronts([empty, *fronts]), exact=False), reason, seconds, False)
+
+
+def _measure(result: RunResult, record: RunRecord, front: ReferenceFront, target: float, keep_front: bool) -> None:
+    """Enter what a record says, and its measures if it is finished."""
+    result.message, result.complete = record.message, record.complete
+    if record.status != "finished":
+        return
+    result.F = record.F if keep_front else None
+    result.ratio = front.hypervolume_ratio(record.F)
+    result.igd_plus = front.igd_plus(record.F)
+    result.share = front.share_found(record.F)
+    result.turn = float(record.turn.mean()) if len(record.turn) else math.inf
+    result.n_points, result.seconds = len(record.F), record.seconds
+    reached = result.ratio >= target
+    result.seconds_to_target = record.seconds if reached else math.inf
+    if is_exact(record.algorithm):
+        return  # it makes no evaluations
+    result.n_eval, result.n_gen = record.n_eval, record.n_gen
+    result.evaluations_to_target = record.n_eval if reached else math.inf
+    if record.history is not None and len(record.history):
+        result.curve = _curve(record.history, record.objectives, front)
+        first = first_reaching(result.curve.ratio, target)
+        if first is not None:
+            result.evaluations_to_target = float(record.history.evaluations[first])
+            result.seconds_to_target = float(record.history.seconds[first])
+
+
+def _curve(history: History, objectives: list[str], front: ReferenceFront) -> Curve:
+    ratio = front.hypervolume_ratios(history.points, history.first, history.last, len(history))
+    shortest: Any = math.nan
+    if "length" in objectives:
+        shortest = front.points[:, objectives.index("length")].min(initial=math.inf)
+    # Without a length to compare with, there is no legal path (inf) or no such objective (NaN).
+    comparable = math.isfinite(shortest) and shortest > 0
+    length = history.best_length / shortest if comparable else np.full(len(history), shortest or math.nan)
+    legal = history.n_legal / np.maximum(history.n_members, 1)
+    return Curve(history.evaluations.astype(float), ratio, length, legal)
+
+
+def gist(message: str) -> str:
+    """Return the line of a message that says most: the first, or of a traceback the last, which names the error."""
+    lines = [line.strip() for line in message.splitlines() if line.strip()] or [""]
+    return lines[-1] if lines[0].startswith("Traceback") else lines[0]

@@ -1,0 +1,110 @@
+"""The algorithms of a study, as its file describes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.problems import OBSTACLES
+from pymoo_gridpath.study.specification import canonical, values
+from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
+
+PRESETS = ("ahmed-deb-2013",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AlgorithmSpec:
+    """One table ``[[algorithms]]``: an algorithm of the capability table, "exact", or a preset.
+
+    Parameters
+    ----------
+    algorithm : str, optional
+        What `make_algorithm` takes, or "exact".
+    preset : {"ahmed-deb-2013"}, optional
+        In place of ``algorithm``: the planner of the paper, see `ahmed_deb_2013`, with its penalty of 1; it keeps the
+        representation of a problem if that is one of the paper's, and takes "integer" otherwise.
+    name : str, optional
+        What tables call it; by default the algorithm's name. Unique in a study.
+    pop_size : int, optional
+        By default 100, the preset's 500.
+    smoothness : bool, optional
+        Whether ties are broken by total turn, see `make_algorithm`.
+    operators : str or mapping, default "default"
+        "default", "paper", "scalarized", "random" (the last two are `path_operators`), or a mapping of ``sampling``,
+        ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``, each the name of a class of
+        `pymoo_gridpath.operators` or a mapping of ``class`` and its arguments; ``base`` says where the others come from.
+    parameters : mapping, optional
+        Further arguments of the algorithm, such as ``n_neighbors``.
+    max_seconds, max_labels : optional
+        Budget of "exact"; by default that of the study's reference.
+    representation, obstacles, penalty, potential_limit, axis : optional
+        Changes to the problems that it solves.
+
+    Raises
+    ------
+    StudyError
+        If a value is of a wrong type or out of its range, or they do not go together.
+    """
+
+    owner: ClassVar[str] = "an algorithm"
+
+    algorithm: str | None = None
+    preset: str | None = None
+    name: str | None = None
+    pop_size: int | None = None
+    smoothness: bool | None = None
+    operators: Any = "default"
+    parameters: Any = None
+    max_seconds: float | None = None
+    max_labels: int | None = None
+    representation: str | None = None
+    obstacles: str | None = None
+    penalty: float | None = None
+    potential_limit: float | None = None
+    axis: str | None = None
+
+    def __post_init__(self):
+        if (self.algorithm is None) == (self.preset is None):
+            raise StudyError("the algorithm has no key algorithm and no preset, or both; expected one of them")
+        set_given(self, "name", check=values.text)
+        set_given(self, "preset", check=lambda value, where: values.choice(value, PRESETS, where))
+        set_given(self, "pop_size", "max_labels", check=lambda value, where: values.whole(value, where, 1))
+        set_given(self, "smoothness", check=values.flag)
+        set_given(self, "max_seconds", check=values.real)
+        set_given(self, "obstacles", check=lambda value, where: values.choice(value, OBSTACLES, where))
+        check_problem_settings(self)
+        if self.algorithm is not None:
+            set_fields(self, algorithm=canonical.algorithm_name(values.text(self.algorithm, ("algorithm",)), ("algorithm",)))
+        self._check_kind()
+        if self.algorithm not in (None, "exact"):
+            set_fields(self, operators=canonical.operators(self.operators, ("operators",)))
+            self._check_slots(str(self.algorithm))
+            set_fields(self, parameters=canonical.parameters(self.algorithm, self.parameters or {}, ("parameters",)))
+
+    def _check_kind(self) -> None:
+        owner = "exact" if self.algorithm == "exact" else "the preset" if self.preset else self.algorithm
+        takes = {"exact": ("max_seconds", "max_labels"), "the preset": ("pop_size",)}
+        known = takes.get(str(owner), ("pop_size", "smoothness", "operators", "parameters"))
+        for key in ("pop_size", "smoothness", "operators", "parameters", "max_seconds", "max_labels"):
+            given = getattr(self, key) not in (None, "default")
+            if given and key not in known:
+                raise StudyError(f"{owner} takes no {key}, only {' and '.join(known)}", (key,))
+
+    def _check_slots(self, algorithm: str) -> None:
+        accepted = canonical.accepted_parameters(algorithm)
+        for slot in self.operators:
+            if slot != "base" and slot not in accepted:
+                takes = ", ".join(known for known in canonical.SLOTS if known in accepted)
+                raise StudyError(f"{algorithm} takes no {slot}, only {takes}", ("operators", slot))
+
+    @property
+    def label(self) -> str:
+        """What tables call it."""
+        return self.name or self.preset or str(self.algorithm)
+
+    @property
+    def overrides(self) -> dict[str, Any]:
+        """What it changes in the problems that it solves."""
+        keys = ("representation", "obstacles", "penalty", "potential_limit", "axis")
+        return {key: getattr(self, key) for key in keys if getattr(self, key) is not None}

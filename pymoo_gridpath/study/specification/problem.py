@@ -1,0 +1,209 @@
+"""The problems of a study, as its file describes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from pymoo_gridpath.errors import GridPathError, StudyError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.maps import MAX_CELLS
+from pymoo_gridpath.objectives import make_objectives
+from pymoo_gridpath.problems import OBSTACLES
+from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.study.specification.base import AXES, check_problem_settings, make_spec, set_fields, set_given
+
+UNKNOWN = ("free", "occupied")
+
+
+@dataclass(frozen=True)
+class RandomFamily:
+    """A family of random grids with a path from corner to corner, see `pymoo_gridpath.problems.random_dense_grid`.
+
+    Parameters
+    ----------
+    size : int
+        Cells a side.
+    p0 : float
+        Probability of an obstacle in a cell off the path, 0 to 1.
+    seeds : int, sequence of int or mapping
+        One grid each: how many (from 1 on), a list, or ``{"first": 100, "count": 11}``.
+    corner_cutting : bool, default True
+        As in the paper. Where corners may not be cut, a grid may turn out to have no path, which `Study.plan` refuses.
+    """
+
+    owner: ClassVar[str] = "a random family"
+
+    size: int
+    p0: float
+    seeds: Any = 1
+    corner_cutting: bool = True
+
+    def __post_init__(self):
+        set_fields(
+            self,
+            size=values.whole(self.size, ("size",), 2, int(MAX_CELLS**0.5)),
+            p0=values.real(self.p0, ("p0",), 0.0, 1.0),
+            seeds=values.seeds(self.seeds, ("seeds",)),
+            corner_cutting=values.flag(self.corner_cutting, ("corner_cutting",)),
+        )
+
+
+@dataclass(frozen=True)
+class QueryRange:
+    """Every ``step``-th query of a ``.scen`` file, counted from 0, from ``first`` to ``last`` inclusive (None: to the end)."""
+
+    owner: ClassVar[str] = "a range of queries"
+
+    first: int = 0
+    last: int | None = None
+    step: int = 1
+
+    def __post_init__(self):
+        values.whole(self.first, ("first",))
+        values.whole(self.step, ("step",), 1)
+        if self.last is not None and values.whole(self.last, ("last",)) < self.first:
+            raise StudyError(f"last is {self.last}, before first, which is {self.first}, so that there is no query", ("last",))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProblemSpec:
+    """One table ``[[problems]]``: a map and query, some queries of a ``.scen`` file, or a family of random grids.
+
+    Parameters
+    ----------
+    name : str, optional
+        What tables call it; by default the map's name, or such as ``random-32-0.2``. Unique in a study.
+    random : RandomFamily or mapping, optional
+    map : str, optional
+        A map file, relative to the study file, or the name of a shipped map.
+    scen : str, optional
+        A MovingAI scenario file; ``map`` is by default the same name without ``.scen``.
+    grid : OccupancyGrid, optional
+        In Python, in place of ``map``.
+    queries : QueryRange, mapping or sequence of int, optional
+        Which queries of ``scen``, counted from 0; all by default.
+    start, goal : (int, int), optional
+        Cells (x, y), y up; by default those that the map names.
+    radius : float, default 0
+        Robot radius in metres, by which obstacles are grown.
+    resolution, unknown, threshold, corner_cutting : optional
+        How the map is read, see `pymoo_gridpath.maps.load_map`.
+    objectives, representation, obstacles, penalty, potential_limit, axis : optional
+        See `GridPathProblem`. ``representation`` is by default "integer" where corners may be cut or ``axis`` is given, and
+        "cells" elsewhere, as on the command line.
+
+    Raises
+    ------
+    StudyError
+        If a value is of a wrong type or out of its range, or they do not go together.
+    """
+
+    owner: ClassVar[str] = "a problem"
+
+    name: str | None = None
+    random: Any = None
+    map: str | None = None
+    scen: str | None = None
+    grid: OccupancyGrid | None = None
+    queries: Any = None
+    start: tuple[int, int] | None = None
+    goal: tuple[int, int] | None = None
+    radius: float = 0.0
+    resolution: float | None = None
+    unknown: str | None = None
+    threshold: float | None = None
+    corner_cutting: bool | None = None
+    objectives: Any = ("length", "vulnerability")
+    representation: str | None = None
+    obstacles: str = "penalty"
+    penalty: float | None = None
+    potential_limit: float | None = None
+    axis: str = "auto"
+
+    def __post_init__(self):
+        self._check_source()
+        set_given(self, "name", "map", "scen", check=values.text)
+        set_given(self, "start", "goal", check=values.cell)
+        set_fields(self, radius=values.real(self.radius, ("radius",)), queries=_queries(self.queries))
+        set_given(self, "resolution", check=lambda value, where: values.real(value, where, open_below=True))
+        set_given(self, "unknown", check=lambda value, where: values.choice(value, UNKNOWN, where))
+        set_given(self, "threshold", check=lambda value, where: values.real(value, where, 0.0, 1.0))
+        set_given(self, "corner_cutting", check=values.flag)
+        set_fields(self, objectives=_objectives(self.objectives))
+        set_fields(self, obstacles=values.choice(self.obstacles, OBSTACLES, ("obstacles",)))
+        set_fields(self, axis=values.choice(self.axis, AXES, ("axis",)))
+        check_problem_settings(self)
+        self._check_obstacles()
+
+    def _check_source(self) -> None:
+        sources = [key for key in ("random", "map", "grid") if getattr(self, key) is not None]
+        if self.scen is not None and self.random is not None:
+            sources.append("scen")
+        if len(sources) > 1:
+            raise StudyError(f"the problem has {sources[0]} and {sources[1]}, expected one of them", (sources[1],))
+        if not sources and self.scen is None:
+            raise StudyError("the problem has no grid, expected one of the keys random, map or scen")
+        if self.grid is not None and not isinstance(self.grid, OccupancyGrid):
+            raise StudyError(f"grid is {values.show(self.grid)}, expected an OccupancyGrid", ("grid",))
+        if self.random is not None:
+            set_fields(self, random=make_spec(RandomFamily, self.random, ("random",)))
+        misplaced = {
+            "random": ("start", "goal", "radius", "resolution", "unknown", "threshold", "corner_cutting", "queries"),
+            "grid": ("resolution", "unknown", "threshold", "corner_cutting"),
+        }
+        for source, keys in misplaced.items():
+            for key in keys:
+                if getattr(self, source) is not None and getattr(self, key) not in (None, 0.0):
+                    inside = "; write it into the table random" if key == "corner_cutting" and source == "random" else ""
+                    raise StudyError(f"{key} is for maps from a file, not for a problem with {source}{inside}", (key,))
+        if self.scen is not None and (self.start or self.goal):
+            key = "start" if self.start else "goal"
+            raise StudyError(f"{key} comes from the scen file; expected queries, to say which of it", (key,))
+        if self.scen is None and self.queries is not None:
+            raise StudyError("queries are those of a scen file, and the problem has no scen", ("queries",))
+
+    def _check_obstacles(self) -> None:
+        if self.obstacles == "constraint" and self.penalty is not None:
+            raise StudyError("penalty is for obstacles 'penalty' and 'limit', not for 'constraint'", ("penalty",))
+        if self.obstacles != "limit" and self.potential_limit is not None:
+            raise StudyError(f"potential_limit is for obstacles 'limit', not for {self.obstacles!r}", ("potential_limit",))
+        if self.obstacles == "limit" and self.potential_limit is None:
+            raise StudyError("obstacles 'limit' needs potential_limit, the largest vulnerability of a path", ("obstacles",))
+
+    @property
+    def label(self) -> str:
+        """What tables call it."""
+        if self.name is not None:
+            return self.name
+        if self.random is not None:
+            return f"random-{self.random.size}-{self.random.p0:g}"
+        if self.grid is not None:
+            return self.grid.name
+        source = str(self.map or self.scen)
+        return Path(source.removesuffix(".scen")).stem
+
+
+def _objectives(value: Any) -> tuple[str, ...]:
+    names: list[Any] = [value] if isinstance(value, str) else list(value) if isinstance(value, Iterable) else [None]
+    if not all(isinstance(name, str) for name in names):
+        raise StudyError(f"objectives is {values.show(value)}, expected a list of names", ("objectives",))
+    try:
+        return tuple(objective.name for objective in make_objectives(names))
+    except GridPathError as error:
+        raise StudyError(str(error), ("objectives",)) from None
+
+
+def _queries(value: Any) -> tuple[int, ...] | QueryRange | None:
+    if value is None or isinstance(value, QueryRange):
+        return value
+    if isinstance(value, Mapping):
+        return make_spec(QueryRange, value, ("queries",))
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return values.each_once(value, ("queries",))
+    raise StudyError(
+        f"queries is {values.show(value)}, expected a list such as [0, 10], or {{ first = 0, last = 40, step = 10 }}",
+        ("queries",),
+    )

@@ -1,0 +1,243 @@
+"""The folder of a study: one file a run, written whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.study.lock import locked
+from pymoo_gridpath.study.plan import Plan
+from pymoo_gridpath.study.record import DamagedRecordError, RunRecord, from_bytes, read_meta
+
+_TEMPORARY = re.compile(r"\.(.+)\.tmp")
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+@dataclass(frozen=True)
+class StoredRuns:
+    """What a store has of some runs.
+
+    Attributes
+    ----------
+    meta : dict of dict
+        Of each run that is there, finished or failed, by key: what its record holds besides arrays and history.
+    missing : list of str
+        Keys of runs that are not there, damaged ones among them.
+    damaged : list of pathlib.Path
+        Files that are not what was written; where they were moved to if they were set aside.
+    failed : list of str
+        Keys of runs that are there and failed.
+    versions : collections.Counter
+        How many runs were made with which versions, as sorted tuples of pairs (package, version).
+    """
+
+    meta: dict[str, dict[str, Any]] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
+    damaged: list[Path] = field(default_factory=list)
+    failed: list[str] = field(default_factory=list)
+    versions: Counter = field(default_factory=Counter)
+
+
+class Store:
+    """The folder of a study.
+
+    ``runs/<first two digits>/<key>.npz`` is a run, ``plan.json`` the plan, ``study.toml`` the study file as it was given,
+    ``damaged/`` what was found damaged. Nothing stands under its name before it is whole and on the disk.
+
+    Parameters
+    ----------
+    folder : path-like
+        Made when first written to.
+    """
+
+    def __init__(self, folder: str | os.PathLike):
+        self.folder = Path(folder)
+
+    def path(self, key: str) -> Path:
+        """Return the file of a run, whether it is there or not."""
+        return self.folder / "runs" / key[:2] / f"{key}.npz"
+
+    def write(self, key: str, data: bytes) -> None:
+        """Store the bytes of a run, in place of what there was.
+
+        Raises
+        ------
+        GridPathError
+            If it cannot be written, as when the disk is full.
+        """
+        self._write(self.path(key), data)
+
+    def read(self, key: str) -> RunRecord:
+        """Return a run.
+
+        Raises
+        ------
+        GridPathError
+            If it is not there.
+        DamagedRecordError
+            If its file is not what was written.
+        """
+        return from_bytes(self._read(key))
+
+    def check(self, keys: Iterable[str], set_aside: bool = False) -> StoredRuns:
+        """Read and verify runs, and say what is there.
+
+        Parameters
+        ----------
+        keys : iterable of str
+        set_aside : bool, default False
+            Whether damaged files are moved to ``damaged/``.
+        """
+        present = self._present()
+        found = StoredRuns()
+        for key in keys:
+            if key not in present:
+                found.missing.append(key)
+                continue
+            try:
+                meta = read_meta(self._read(key))
+                if meta["key"] != key:
+                    raise DamagedRecordError(f"the file of run {key} holds the run {meta['key']}")
+            except DamagedRecordError:
+                found.missing.append(key)
+                found.damaged.append(self._set_aside(key) if set_aside else self.path(key))
+                continue
+            found.meta[key] = meta
+            if meta["status"] == "failed":
+                found.failed.append(key)
+            found.versions[tuple(sorted(meta["versions"].items()))] += 1
+        return found
+
+    def write_plan(self, plan: Plan, study: str | None = None) -> None:
+        """Store the plan, and the text of the study file if there is one."""
+        self._write(self.folder / "plan.json", json.dumps(plan.to_json(), separators=(",", ":")).encode())
+        if study is not None:
+            self._write(self.folder / "study.toml", study.encode())
+
+    def read_plan(self) -> Plan:
+        """Return the plan, without the grids of maps.
+
+        Raises
+        ------
+        GridPathError
+            If there is none, or it cannot be read.
+        """
+        path = self.folder / "plan.json"
+        try:
+            return Plan.from_json(json.loads(path.read_bytes()))
+        except FileNotFoundError:
+            raise GridPathError(f"{self.folder} has no plan.json, expected the folder of a study that was run") from None
+        except OSError as error:
+            raise GridPathError(f"{path} cannot be read: {error.strerror}") from None
+        except (ValueError, KeyError, TypeError) as error:
+            raise GridPathError(
+                f"{path} is not a plan that this version can read ({error}); `study run` writes it anew"
+            ) from None
+
+    @contextlib.contextmanager
+    def lock(self) -> Iterator[None]:
+        """Keep other coordinators off the folder while open, and remove what a killed one had not finished writing.
+
+        Raises
+        ------
+        GridPathError
+            If another has it, or the folder cannot be written to.
+        """
+        with contextlib.ExitStack() as stack:
+            try:
+                _make(self.folder)
+                stack.enter_context(locked(self.folder / "lock"))
+                self._remove_temporary()
+            except BlockingIOError:
+                raise GridPathError(
+                    f"{self.folder} is in use by another run of a study, expected one at a time; wait for it or choose another "
+                    "folder"
+                ) from None
+            except OSError as error:
+                raise GridPathError(f"{self.folder} cannot be written to: {error.strerror}") from None
+            yield
+
+    # -- parts ------------------------------------------------------------------------------------------------------------
+
+    def _present(self) -> set[str]:
+        runs = self.folder / "runs"
+        if not runs.is_dir():
+            return set()
+        names = (file.name for part in os.scandir(runs) if part.is_dir() for file in os.scandir(part.path))
+        return {name.removesuffix(".npz") for name in names if name.endswith(".npz")}
+
+    def _read(self, key: str) -> bytes:
+        path = self.path(key)
+        try:
+            return path.read_bytes()
+        except FileNotFoundError:
+            raise GridPathError(f"{self.folder} has no run {key}, expected one that was stored") from None
+        except OSError as error:
+            raise GridPathError(f"{path} cannot be read: {error.strerror}") from None
+
+    def _write(self, path: Path, data: bytes) -> None:
+        temporary = path.with_name(f".{path.name}.tmp")
+        try:
+            _make(path.parent)
+            try:
+                with open(temporary, "wb") as file:
+                    file.write(data)
+                    file.flush()
+                    os.fsync(file.fileno())
+                os.replace(temporary, path)
+            except OSError:
+                temporary.unlink(missing_ok=True)
+                raise
+            _sync_folder(path.parent)
+        except OSError as error:
+            hint = "; what is stored is whole, and running again goes on from there" if error.errno in _FULL else ""
+            raise GridPathError(f"{path} cannot be written: {error.strerror}{hint}") from None
+
+    def _set_aside(self, key: str) -> Path:
+        """Move a damaged file out of the way and return where to."""
+        folder = self.folder / "damaged"
+        _make(folder)
+        number, target = 1, folder / f"{key}.npz"
+        while target.exists():
+            number += 1
+            target = folder / f"{key}-{number}.npz"
+        os.replace(self.path(key), target)
+        return target
+
+    def _remove_temporary(self) -> None:
+        runs = self.folder / "runs"
+        folders = [self.folder, *(part for part in (runs.iterdir() if runs.is_dir() else ()) if part.is_dir())]
+        for folder in folders:
+            for entry in os.scandir(folder):
+                if _TEMPORARY.fullmatch(entry.name):
+                    os.unlink(entry.path)
+
+
+def _make(folder: Path) -> None:
+    """Make a folder and those above it that are missing, each on the disk before anything stands in it."""
+    if folder.is_dir():
+        return
+    if folder.parent != folder:
+        _make(folder.parent)
+    folder.mkdir(exist_ok=True)
+    _sync_folder(folder.parent)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Bring the names in a folder to the disk, so that a power failure does not undo a renaming."""
+    if os.name == "nt":
+        return  # folders cannot be opened there
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
