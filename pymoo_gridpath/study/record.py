@@ -208,7 +208,9 @@ def _narrowed(X: np.ndarray) -> np.ndarray:
     """Return whole numbers in the smallest type that holds them all."""
     if X.dtype.kind not in "iu" or not X.size:
         return X
-    return X.astype(np.result_type(np.min_scalar_type(X.min()), np.min_scalar_type(X.max())))
+    least, most = int(X.min()), int(X.max())
+    kinds = (np.int8, np.int16, np.int32, np.int64) if least < 0 else (np.uint8, np.uint16, np.uint32, np.uint64)
+    return X.astype(next(kind for kind in kinds if np.iinfo(kind).min <= least and most <= np.iinfo(kind).max))
 
 
 def _packed(history: History) -> dict[str, np.ndarray]:

@@ -9,7 +9,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from small_studies import history, record
@@ -53,6 +53,7 @@ def test_what_is_read_is_what_was_written(changes):
     assert_same(record(**changes), from_bytes(to_bytes(record(**changes))))
 
 
+@example(np.array([[-1, 2**53 + 1]]))
 @given(arrays.arrays(st.sampled_from(["i1", "u1", "i8", "u8", "i4"]), st.tuples(st.integers(0, 3), st.integers(0, 3))))
 def test_whole_numbers_of_any_size_come_back(X):
     back = from_bytes(to_bytes(record(X=X))).X
