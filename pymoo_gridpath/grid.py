@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import ndimage, signal, sparse
+from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
 from pymoo_gridpath.errors import GridError, UnreachableError
@@ -308,6 +308,9 @@ class OccupancyGrid:
         disc = np.sqrt(offset[:, None] + offset[None, :]) < cells - 1e-9
         if disc.sum() <= 1:
             return self
+        # It takes as long to import as the rest of the package, and is used by this method alone.
+        from scipy import signal
+
         hits = signal.oaconvolve(self._occupied.astype(float), disc.astype(float), mode="same")
         return self.replace(occupied=(hits > 0.5) | self._occupied)
 
