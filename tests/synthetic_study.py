@@ -12,6 +12,7 @@ from pymoo_gridpath.study.record import History, RunRecord, to_bytes
 from pymoo_gridpath.study.store import Store
 
 VERSIONS = {"pymoo_gridpath": "0.1.0", "pymoo": "0.6.2"}
+NSGA2 = {"algorithm": "NSGA2", "pop_size": 100, "smoothness": None, "operators": {"base": "default"}, "parameters": {}}
 MACHINE = {"system": "Linux", "processor": "made up", "cores": 2}
 
 
@@ -42,7 +43,7 @@ def make_plan(groups, algorithms, n_seeds, objectives=("length", "vulnerability"
             problems.append(PlannedProblem(label, group, problem_spec(objectives, number), reference=key))
     planned = []
     for name in algorithms:
-        spec = {"algorithm": "exact", "max_seconds": 60.0} if name == "exact" else {"algorithm": "NSGA2", "pop_size": 100}
+        spec = {"algorithm": "exact", "max_seconds": 60.0} if name == "exact" else NSGA2
         planned.append(PlannedAlgorithm(name, spec, {}))
     if reference:
         listed = algorithms.index("exact") if "exact" in algorithms else None

@@ -18,6 +18,7 @@ from matplotlib.text import Text
 from scipy import stats
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.study import AlgorithmSpec, ProblemSpec, Store, Study
 from pymoo_gridpath.study.record import to_bytes
 from pymoo_gridpath.study.report import write_report
 from pymoo_gridpath.study.report.comparisons import compare, compare_each
@@ -27,6 +28,7 @@ from pymoo_gridpath.study.report.figure_style import algorithm_styles, rendered,
 from pymoo_gridpath.study.report.front_plots import attainment_surfaces, plot_attainment, plot_fronts
 from pymoo_gridpath.study.report.plots import band, plot_convergence, plot_ranks, plot_ratios
 from pymoo_gridpath.study.report.results import Curve, collect, gist
+from pymoo_gridpath.study.report.settings import settings_blocks
 from pymoo_gridpath.study.report.statistics import friedman
 from pymoo_gridpath.study.report.tables import Table, escape_latex, percent, probability, ratio, significant, spread
 
@@ -565,3 +567,21 @@ def test_slugs_differ():
 def test_the_gist_of_a_traceback_is_its_last_line():
     assert gist("Traceback (most recent call last):\n  File\nValueError: why\n") == "ValueError: why"
     assert gist("out of time\nmore") == "out of time" and gist("") == ""
+
+
+def test_the_settings_say_what_an_algorithm_changes_in_which_problems(tmp_path):
+    study = Study(
+        problems=[
+            ProblemSpec(random={"size": 8, "p0": 0.2, "seeds": 1}, name="random"),
+            ProblemSpec(map="paper16", name="map", representation="cells"),
+        ],
+        algorithms=[AlgorithmSpec(preset="ahmed-deb-2013"), AlgorithmSpec(algorithm="NSGA2", representation="cells")],
+        seeds=1,
+        budget={"generations": 1},
+    )
+    Store(tmp_path).write_plan(study.plan())
+    table = settings_blocks(collect(Store(tmp_path)), times=False)[-1]
+    assert [row[-1] for row in table.rows] == [
+        "penalty 1.0 on random; representation integer; penalty 1.0 on map",
+        "representation cells on random; nothing on map",
+    ]

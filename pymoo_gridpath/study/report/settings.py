@@ -9,11 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from pymoo_gridpath.study.plan import PlannedAlgorithm
 from pymoo_gridpath.study.report.blocks import Block, Heading, Text
 from pymoo_gridpath.study.report.measures import SAME, quartiles
 from pymoo_gridpath.study.report.results import Results, gist
 from pymoo_gridpath.study.report.summary import reference_phrase
 from pymoo_gridpath.study.report.tables import Table, count, significant, spread
+from pymoo_gridpath.study.specification.canonical import resolve
 
 # Rows of lists of single runs or problems.
 _MOST_ROWS = 40
@@ -75,7 +77,7 @@ def settings_blocks(results: Results, times: bool) -> list[Block]:
     header += ["seconds of the exact search"] if times else []
     problems_table = Table("problems", "Problems; medians [quartiles].", header, rows, left=5, for_papers=False)
     rows = [
-        [str(k + 1), algorithm.label, _described(algorithm.spec), _described(algorithm.overrides) or "nothing"]
+        [str(k + 1), algorithm.label, _described(algorithm.spec), _changes(results, algorithm)]
         for k, algorithm in enumerate(plan.algorithms)
     ]
     header = ["#", "algorithm", "what it is", "what it changes in problems"]
@@ -179,6 +181,19 @@ def _rules(spec: dict[str, Any]) -> str:
     if spec["obstacles"] == "limit" and spec.get("potential_limit") is not None:
         text += f" {spec['potential_limit']:g}"
     return text
+
+
+def _changes(results: Results, algorithm: PlannedAlgorithm) -> str:
+    """Return what an algorithm changes in the problems that it solves, and in which groups if not in all."""
+    found: dict[str, list[str]] = {}
+    for group, problems in results.groups.items():
+        spec = results.plan.problems[problems[0]].spec
+        changed, _ = resolve(spec, algorithm.spec, algorithm.overrides)
+        text = _described({key: value for key, value in changed.items() if value != spec.get(key)}) or "nothing"
+        found.setdefault(text, []).append(group)
+    if len(found) == 1:
+        return next(iter(found))
+    return "; ".join(f"{text} on {', '.join(groups)}" for text, groups in found.items())
 
 
 def _described(spec: dict[str, Any]) -> str:
