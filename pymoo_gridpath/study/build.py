@@ -31,15 +31,14 @@ def pack_grid(grid: OccupancyGrid) -> tuple[dict[str, Any], bytes]:
     Returns
     -------
     dict
-        ``digest`` (SHA-256 of shape and cells), ``width``, ``height``, ``resolution`` and ``corner_cutting``; names and poses
-        change no result.
+        ``digest`` (SHA-256 of shape and cells), ``width``, ``height`` and ``corner_cutting``; names, poses and the resolution
+        change no result, since measures are in cells.
     bytes
         The cells, eight a byte, compressed.
     """
     cells = np.packbits(grid.occupied).tobytes()
     digest = hashlib.sha256(f"{grid.width} {grid.height} ".encode() + cells).hexdigest()
-    size = {"width": grid.width, "height": grid.height}
-    spec = {"digest": digest, **size, "resolution": grid.resolution, "corner_cutting": grid.corner_cutting}
+    spec = {"digest": digest, "width": grid.width, "height": grid.height, "corner_cutting": grid.corner_cutting}
     return spec, zlib.compress(cells)
 
 
@@ -67,7 +66,7 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
     packed = np.frombuffer(zlib.decompress(cells), dtype=np.uint8)
     shape = spec["height"], spec["width"]
     occupied = np.unpackbits(packed, count=shape[0] * shape[1]).reshape(shape).astype(bool)
-    grid = OccupancyGrid(occupied, resolution=spec["resolution"], corner_cutting=spec["corner_cutting"])
+    grid = OccupancyGrid(occupied, corner_cutting=spec["corner_cutting"])
     if pack_grid(grid)[0]["digest"] != spec["digest"]:
         raise GridPathError("the cells of the map are not those that were planned with")
     return grid

@@ -37,7 +37,7 @@ def add_study_commands(commands) -> None:
     where = run.add_mutually_exclusive_group()
     where.add_argument("--jobs", type=_positive, default=1, metavar="N", help="processes on this computer (default: 1)")
     where.add_argument("--dask", metavar="tcp://HOST:PORT", help="scheduler of a Dask cluster that runs already")
-    run.add_argument("--retry-failed", action="store_true", help="run again what ended with an error")
+    run.add_argument("--retry-failed", action="store_true", help="run again what ended with an error or was cut short")
 
     report = steps.add_parser("report", help="write tables, plots and a page", description=_report.__doc__)
     report.set_defaults(run=_report)
@@ -126,9 +126,7 @@ def _run(arguments) -> int:
         elif arguments.jobs > 1:
             executor = stack.enter_context(local_processes(arguments.jobs))
         text = None if study.source is None else study.source.text
-        outcome = run_study(plan, folder, executor, retry_failed=arguments.retry_failed, study=text)
-    for message in outcome.messages:
-        print(f"pymoo-gridpath: {message}", file=sys.stderr)
+        outcome = run_study(plan, folder, executor, retry_failed=arguments.retry_failed, study=text, tell=_tell)
     if outcome.interrupted:
         return EXIT_INTERRUPTED
     print(f"done: {outcome.n_run:,} run now, {outcome.n_done_before:,} before, {outcome.n_failed:,} failed")
@@ -147,6 +145,10 @@ def _report(arguments) -> int:
 
 
 # -- parts --------------------------------------------------------------------------------------------------------------
+
+
+def _tell(message: str) -> None:
+    print(f"pymoo-gridpath: {message}", file=sys.stderr, flush=True)
 
 
 def _results(arguments) -> Path:

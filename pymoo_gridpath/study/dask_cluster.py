@@ -6,10 +6,12 @@ import contextlib
 import json
 import logging
 import pickle
+import re
+import socket
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, TimeoutError
+from concurrent.futures import Future
 from typing import Any
 
 from pymoo_gridpath.errors import GridPathError
@@ -74,13 +76,16 @@ class DaskExecutor(StudyExecutor):
         if now - self._looked < _INTERVAL:
             return
         self._looked = now
-        threads = sum(self._ask(self._client.nthreads).values())
+        threads = self._ask(self._client.nthreads)
+        if threads.keys() - self._checked:
+            # Some have joined since.
+            self.check_workers()
         if threads:
-            self.capacity, self._last_worker = 2 * threads, now
+            self.capacity, self._last_worker = 2 * sum(threads.values()), now
         elif now - self._last_worker > self.timeout:
             raise GridPathError(
                 f"the Dask cluster at {self.address} has had no worker for {self.timeout:g} s, expected at least one; "
-                f"start one with: dask worker {self.address}"
+                f"start one with: dask worker {self.address} --nthreads 1"
             )
 
     def recover(self, error: BaseException) -> None:
@@ -101,6 +106,7 @@ class DaskExecutor(StudyExecutor):
         packages = [package for package in versions() if package != "python"]
         report = f"(lambda names: (exec({_REPORT!r}, names), names['found'])[1])({{'packages': {packages!r}}})"
         answers = self._ask(self._client.run, eval, report, on_error="return")
+        self._checked = set(answers)
         for worker, answer in answers.items():
             if isinstance(answer, OSError):
                 # The connection: it ended while it was asked, and what it worked on goes to others.
@@ -125,7 +131,13 @@ class DaskExecutor(StudyExecutor):
         from distributed import Client
 
         trouble = f"no Dask scheduler answers at {self.address} within {self.timeout:g} s"
+        address = re.fullmatch(r"(tcp|tls|ucx|wss?)://(\[[^]]+\]|[^/:]+):(\d+)/?", self.address)
+        if address is None:
+            raise GridPathError(f"{self.address!r} is no address of a Dask scheduler, expected tcp://HOST:PORT")
         try:
+            if address[1] == "tcp":
+                # A client that finds nobody goes on trying, and ends with a traceback when it is cleared away.
+                socket.create_connection((address[2].strip("[]"), int(address[3])), self.timeout).close()
             return self._within(lambda: Client(self.address, timeout=self.timeout, set_as_default=False))
         except TimeoutError:
             raise GridPathError(f"{trouble}, expected tcp://HOST:PORT of one that runs") from None
@@ -142,7 +154,7 @@ class DaskExecutor(StudyExecutor):
             if time.monotonic() - self._last_worker > self.timeout:
                 raise GridPathError(
                     f"the Dask scheduler at {self.address} has no worker after {self.timeout:g} s, expected at least one; "
-                    f"start one with: dask worker {self.address}"
+                    f"start one with: dask worker {self.address} --nthreads 1"
                 )
             time.sleep(0.1)
 

@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from multiprocessing.connection import wait as wait_for_any
+from typing import Any
 
 from pymoo_gridpath.errors import GridPathError
 
@@ -162,15 +163,30 @@ def _end_with_parent() -> None:
 
 
 class _Foreign(StudyExecutor):
-    """An executor from elsewhere, used as it is."""
+    """An executor from elsewhere, used as it is; what it returns may be a job that is but asked, as those of submitit are."""
 
     def __init__(self, executor: Executor):
         self._executor = executor
+        self._jobs: dict[Future, Any] = {}
         workers = getattr(executor, "_max_workers", None)
         self.capacity = 2 * workers if isinstance(workers, int) else _UNKNOWN_CAPACITY
 
     def submit(self, fn: Callable, /, *args, **kwargs) -> Future:
-        return self._executor.submit(fn, *args, **kwargs)
+        job: Any = self._executor.submit(fn, *args, **kwargs)
+        if isinstance(job, Future):
+            return job
+        future: Future = Future()
+        self._jobs[future] = job
+        return future
+
+    def check(self) -> None:
+        for future, job in list(self._jobs.items()):
+            if job.done():
+                del self._jobs[future]
+                try:
+                    future.set_result(job.result())
+                except Exception as error:
+                    future.set_exception(error)
 
     def recover(self, error: BaseException) -> None:
         if isinstance(error, BrokenExecutor):

@@ -159,8 +159,8 @@ def to_bytes(record: RunRecord) -> bytes:
     return data + _SEAL + hashlib.sha256(data).hexdigest().encode()
 
 
-def from_bytes(data: bytes) -> RunRecord:
-    """Return the run that `to_bytes` wrote.
+def from_bytes(data: bytes, genes: bool = True) -> RunRecord:
+    """Return the run that `to_bytes` wrote; without genes if these are not wanted.
 
     Raises
     ------
@@ -173,11 +173,12 @@ def from_bytes(data: bytes) -> RunRecord:
         arrays = {
             name.removesuffix(".npy"): np.lib.format.read_array(io.BytesIO(archive.read(name)), allow_pickle=False)
             for name in archive.namelist()
-            if name != _META
+            if name != _META and (genes or name != "X.npy")
         }
     history = _unpacked(arrays) if "records" in arrays else None
     del meta["format"]
-    return RunRecord(**meta, X=arrays["X"].astype(kind, copy=False), F=arrays["F"], turn=arrays["turn"], history=history)
+    X = arrays["X"].astype(kind, copy=False) if genes else np.empty((len(arrays["F"]), 0), dtype=kind)
+    return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history)
 
 
 def read_meta(data: bytes) -> dict[str, Any]:

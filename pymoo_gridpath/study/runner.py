@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections import Counter, deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 
@@ -15,6 +15,7 @@ from pymoo_gridpath.study.executors import describe, study_executor
 from pymoo_gridpath.study.plan import Plan, PlannedRun
 from pymoo_gridpath.study.progress import StudyProgress
 from pymoo_gridpath.study.record import read_meta
+from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.study.store import Store, StoredRuns
 
 #: How often a run is given out before it is given up, if what carries it out fails.
@@ -52,21 +53,22 @@ class Outcome:
 
 
 def run_study(
-    plan: Plan,
+    plan: Plan | Study,
     folder: str | os.PathLike,
     executor: Executor | None = None,
     retry_failed: bool = False,
     study: str | None = None,
     stream=None,
+    tell: Callable[[str], None] | None = None,
 ) -> Outcome:
     """Carry out every run of a plan that is not stored yet, and store each as soon as it has ended.
 
     May be killed at any moment and called again: what is stored is whole, and only what is missing is carried out. What a run
-    finds depends on its task alone, whatever the executor.
+    finds depends on its task alone, whatever the executor; but for an exact front that its time does not suffice for.
 
     Parameters
     ----------
-    plan : Plan
+    plan : Plan or Study
     folder : path-like
         Where the runs are stored, see `Store`; made if need be.
     executor : concurrent.futures.Executor, optional
@@ -75,11 +77,14 @@ def run_study(
         process take turns, so that they are of little use, and measured times mean less. It is left open, except that an
         interruption or an error ends what it does.
     retry_failed : bool, default False
-        Whether runs that are stored as failed are carried out again.
+        Whether runs that are stored as failed are carried out again, and exact fronts that are not whole.
     study : str, optional
         Text of the study file, to be kept beside the plan.
     stream : file, optional
         Where progress is shown if it is a terminal; standard error by default.
+    tell : callable, optional
+        Called with each sentence of `Outcome.messages` as soon as there is cause for it; what concerns stored runs before any
+        is carried out.
 
     Returns
     -------
@@ -89,24 +94,36 @@ def run_study(
     Raises
     ------
     GridPathError
-        If another process runs a study in the folder; if it cannot be written to; if the executor is beyond repair, or a run
-        could not be handed to it in `MAX_ATTEMPTS` attempts.
+        If another process runs a study in the folder, or it holds another study; if it cannot be written to; if the executor is
+        beyond repair, or a run could not be handed to it in `MAX_ATTEMPTS` attempts.
     """
+    if isinstance(plan, Study):
+        plan = plan.plan()
     store = Store(folder)
+    messages: list[str] = []
+
+    def say(sentences: Iterable[str]) -> None:
+        for sentence in sentences:
+            messages.append(sentence)
+            if tell is not None:
+                tell(sentence)
+
     with store.lock():
-        store.write_plan(plan, study)
         runs = {run.key: run for run in plan.runs}
+        say(_about_plan_before(store, plan))
+        store.write_plan(plan, study)
         found = store.check(runs, set_aside=True)
-        again = found.failed if retry_failed else []
+        say(_about_stored(found))
+        again = [*found.failed, *found.incomplete] if retry_failed else []
         due = set(found.missing).union(again)
         coordinator = _Coordinator(plan, store, [run for key, run in runs.items() if key in due], executor, stream)
         interrupted = coordinator.run()
     failed = {key: found.meta[key]["message"] for key in found.failed} | coordinator.failed
     failed = {key: message for key, message in failed.items() if key not in coordinator.finished}
-    messages = [*_about_stored(found), *_about_failed(plan, runs, failed)]
+    say(_about_failed(plan, runs, failed))
     if interrupted:
         n_stored = len(found.meta) + len(coordinator.finished.union(coordinator.failed).difference(found.meta))
-        messages.append(f"interrupted: {n_stored} of {len(runs)} runs are stored; running again goes on from there")
+        say([f"interrupted: {n_stored} of {len(runs)} runs are stored; running again goes on from there"])
     return Outcome(
         n_planned=len(runs),
         n_done_before=len(runs) - len(due),
@@ -264,6 +281,24 @@ def _error_of(future: Future) -> BaseException | None:
         return error
 
 
+def _about_plan_before(store: Store, plan: Plan) -> Iterable[str]:
+    """Say what the folder's plan so far had that this one has not, or refuse a folder that holds another study."""
+    if not (store.folder / "plan.json").exists():
+        return
+    try:
+        # References are shared by studies that differ in all else.
+        before = {run.key for run in store.read_plan().runs if run.algorithm is not None}
+    except GridPathError:
+        return  # a plan that this version cannot read is written anew
+    dropped = before.difference(run.key for run in plan.runs)
+    if dropped and len(dropped) == len(before):
+        raise GridPathError(
+            f"{store.folder} holds another study, none of whose runs this one asks for; choose another folder (--output)"
+        )
+    if dropped:
+        yield f"{_count(len(dropped), 'run')} part of the study before and no longer; what is stored of them stays"
+
+
 def _about_stored(found: StoredRuns) -> Iterable[str]:
     if found.damaged:
         yield (
@@ -289,7 +324,10 @@ def _about_failed(plan: Plan, runs: dict[str, PlannedRun], failed: dict[str, str
     if failed:
         key, message = next(iter(failed.items()))
         last = message.strip().splitlines()[-1]
-        yield f"{_count(len(failed), 'run')} stored as failed, such as {_name(plan, runs[key])}: {last}"
+        yield (
+            f"{_count(len(failed), 'run')} stored as failed, such as {_name(plan, runs[key])}: {last}; --retry-failed "
+            "(retry_failed=True) tries again"
+        )
 
 
 def _count(number: int, noun: str) -> str:

@@ -29,13 +29,15 @@ class StoredRuns:
     Attributes
     ----------
     meta : dict of dict
-        Of each run that is there, finished or failed, by key: what its record holds besides arrays and history.
+        Of each run that is there, finished or failed, by key: its status, and the message of a failed one.
     missing : list of str
         Keys of runs that are not there, damaged ones among them.
     damaged : list of pathlib.Path
         Files that are not what was written; where they were moved to if they were set aside.
     failed : list of str
         Keys of runs that are there and failed.
+    incomplete : list of str
+        Keys of exact fronts that are there and not whole, for want of time or memory.
     versions : collections.Counter
         How many runs were made with which versions, as sorted tuples of pairs (package, version).
     """
@@ -44,6 +46,7 @@ class StoredRuns:
     missing: list[str] = field(default_factory=list)
     damaged: list[Path] = field(default_factory=list)
     failed: list[str] = field(default_factory=list)
+    incomplete: list[str] = field(default_factory=list)
     versions: Counter = field(default_factory=Counter)
 
 
@@ -76,8 +79,14 @@ class Store:
         """
         self._write(self.path(key), data)
 
-    def read(self, key: str) -> RunRecord:
+    def read(self, key: str, genes: bool = True) -> RunRecord:
         """Return a run.
+
+        Parameters
+        ----------
+        key : str
+        genes : bool, default True
+            Whether to unpack X, the largest array; without, it has no columns.
 
         Raises
         ------
@@ -86,7 +95,10 @@ class Store:
         DamagedRecordError
             If its file is not what was written.
         """
-        return from_bytes(self._read(key))
+        record = from_bytes(self._read(key), genes)
+        if record.key != key:
+            raise DamagedRecordError(f"the file of run {key} holds the run {record.key}")
+        return record
 
     def check(self, keys: Iterable[str], set_aside: bool = False) -> StoredRuns:
         """Read and verify runs, and say what is there.
@@ -111,17 +123,25 @@ class Store:
                 found.missing.append(key)
                 found.damaged.append(self._set_aside(key) if set_aside else self.path(key))
                 continue
-            found.meta[key] = meta
-            if meta["status"] == "failed":
+            failed = meta["status"] == "failed"
+            # No more, since a study may have hundreds of thousands.
+            found.meta[key] = {"status": meta["status"], "message": meta["message"] if failed else ""}
+            if failed:
                 found.failed.append(key)
+            elif not meta["complete"]:
+                found.incomplete.append(key)
             found.versions[tuple(sorted(meta["versions"].items()))] += 1
         return found
 
     def write_plan(self, plan: Plan, study: str | None = None) -> None:
         """Store the plan, and the text of the study file if there is one."""
         self._write(self.folder / "plan.json", json.dumps(plan.to_json(), separators=(",", ":")).encode())
+        file = self.folder / "study.toml"
         if study is not None:
-            self._write(self.folder / "study.toml", study.encode())
+            self._write(file, study.encode())
+        elif file.exists():
+            # It belonged to another plan.
+            file.unlink()
 
     def read_plan(self) -> Plan:
         """Return the plan, without the grids of maps.
@@ -238,6 +258,8 @@ def _sync_folder(folder: Path) -> None:
         return  # folders cannot be opened there
     descriptor = os.open(folder, os.O_RDONLY)
     try:
-        os.fsync(descriptor)
+        # Some file systems cannot; the file is in place all the same.
+        with contextlib.suppress(OSError):
+            os.fsync(descriptor)
     finally:
         os.close(descriptor)

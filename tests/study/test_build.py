@@ -59,8 +59,8 @@ def same(one, other) -> bool:
 def test_grids_pack_and_build(occupied, resolution, corner_cutting):
     grid = OccupancyGrid(occupied, resolution, (1, 2, 3), corner_cutting, "a name")
     spec, cells = pack_grid(grid)
-    assert build_grid(json.loads(json.dumps(spec)), cells) == grid.replace(origin=(0, 0, 0), name="grid")
-    assert pack_grid(grid.replace(name="another", origin=(0, 0)))[0] == spec
+    assert build_grid(json.loads(json.dumps(spec)), cells) == grid.replace(resolution=1.0, origin=(0, 0, 0), name="grid")
+    assert pack_grid(grid.replace(name="another", resolution=2.0, origin=(0, 0)))[0] == spec
 
 
 @settings(max_examples=50, deadline=None)

@@ -29,7 +29,7 @@ from pymoo_gridpath.study.report.front_plots import attainment_surfaces, plot_at
 from pymoo_gridpath.study.report.plots import band, plot_convergence, plot_ranks, plot_ratios
 from pymoo_gridpath.study.report.results import Curve, collect, gist
 from pymoo_gridpath.study.report.settings import settings_blocks
-from pymoo_gridpath.study.report.statistics import friedman
+from pymoo_gridpath.study.report.statistics import critical_difference, friedman
 from pymoo_gridpath.study.report.tables import Table, escape_latex, percent, probability, ratio, significant, spread
 
 NAMES = ["exact", "a_b & 50 %", "<script>alert(1)</script>", "plain"]
@@ -349,13 +349,30 @@ def test_figures_of_an_earlier_report_go_and_other_files_stay(tmp_path):
     plan = made.make_plan({"g": 1}, ["a"], 1)
     made.fill(tmp_path, plan, n_records=4, n_points=5)
     figures = tmp_path / "report" / "figures"
-    figures.mkdir(parents=True)
-    for name in ("fronts-old.png", "mine.png"):
+    written = {path.name for path in write_report(tmp_path, formats=("png", "pdf")) if path.parent == figures}
+    assert {"fronts-g.png", "fronts-g.pdf"} < written
+    own = {"fronts-mine.png", "fronts-g.jpg", "ratios-old.pdf", "mine.png"}
+    for name in own:
         (figures / name).write_bytes(b"")
-    write_report(tmp_path, formats="svg")
+    files = write_report(tmp_path, formats="svg")
     names = {path.name for path in figures.iterdir()}
-    assert "mine.png" in names and "fronts-old.png" not in names and "fronts-g.svg" in names
+    assert names == own | {path.name for path in files if path.parent == figures}
+    assert "fronts-g.svg" in names and not names & written
     assert "fronts-g.svg" in texts(tmp_path / "report")[1]
+
+
+def test_no_figure_goes_that_only_another_text_links(tmp_path):
+    plan = made.make_plan({"](figures/fronts-b.png)": 1}, ["a", "](figures/fronts-c.png)"], 2)
+    made.fill(tmp_path, plan, n_records=4, n_points=5)
+    figures = tmp_path / "report" / "figures"
+    figures.mkdir(parents=True)
+    own = {f"fronts-{letter}.png" for letter in "abc"}
+    for name in own:
+        (figures / name).write_bytes(b"")
+    (tmp_path / "report" / "report.md").write_text("My own ![one](figures/fronts-a.png)", encoding="utf-8")
+    for _ in range(2):
+        write_report(tmp_path, formats=())
+        assert {path.name for path in figures.iterdir()} == own
 
 
 def test_a_real_study_has_a_report(done, tmp_path):
@@ -415,6 +432,34 @@ def test_rounding_breaks_no_ties(tmp_path):
     for run in results.runs:
         run.ratio = 0.9 + 1e-13 * run.algorithm
     assert (compare(results, [0], "ratio").pairs[0].p, compare(results, [0], "ratio").pairs[0].effect) == (1.0, 0.5)
+
+
+def test_differences_of_medians_that_rounding_parts_are_equal(tmp_path):
+    results = results_of(tmp_path, 4, 3, 2)
+    medians = [[0.9, 0.3, 0.7, 0.5], [0.8, 0.4, 0.6, 0.4], [0.0] * 4]
+    assert 0.4 - 0.3 != 0.5 - 0.4
+    for run in results.runs:
+        run.ratio = medians[run.algorithm][run.problem]
+    pair = compare(results, range(4), "ratio").pairs[0]
+    assert (pair.statistic, pair.p, pair.effect) == (7.5, pytest.approx(0.625), 0.5)
+    # The median of two values that are rounded is not.
+    for run in results.runs:
+        run.ratio = (0.1, 0.2)[run.seed - 1] if run.algorithm == 0 else 0.15
+    assert compare(results, range(4), "ratio").friedman.ranks.tolist() == [2.0, 2.0, 2.0]
+
+
+def test_two_algorithms_have_no_average_ranks(tmp_path):
+    # Seven orders of eight would part them after Nemenyi, but not by the Wilcoxon test if the eighth is the clearest.
+    results = results_of(tmp_path, 8, 2, 2)
+    for run in results.runs:
+        run.ratio = (0.9, 0.5)[run.algorithm] if run.problem == 7 else (0.5, 0.6)[run.algorithm]
+    comparison = compare(results, range(8), "ratio")
+    assert critical_difference(2, 8) < 7 / 8 - 1 / 8 and comparison.pairs[0].p == pytest.approx(2 * 30 / 2**8)
+    assert comparison.friedman is None
+    files = write_report(tmp_path, output=tmp_path / "out", formats="svg")
+    assert not [path for path in files if path.name.startswith("ranks")]
+    assert "Average ranks by" not in texts(tmp_path / "out")[1]
+    assert "friedman" not in {row["test"] for row in rows(tmp_path / "out" / "tests.csv")}
 
 
 def test_problems_that_lack_an_algorithm_are_left_out_of_its_pairs(tmp_path):
@@ -558,6 +603,38 @@ def test_tables_survive_any_name():
     table = Table("t", "caption_1", ["a|b", "n"], [["new\nline", "<1>"], ["\\{}~^", "∞"]])
     assert [line.count("|") - line.count(r"\|") for line in table.markdown().splitlines()[2:6]] == [3, 3, 3, 3]
     assert escape_latex("\\{}~^<∞") == r"\textbackslash{}\{\}\textasciitilde{}\textasciicircum{}\textless{}$\infty$"
+
+
+def test_no_cell_is_taken_for_the_argument_of_the_line_before():
+    table = Table("t", "c", ["[a]", "n"], [["[2pt]", "1"], ["*", "2"], [" [x", "3"], ["a[*", "[4"]])
+    found = [line.strip() for line in table.latex().splitlines() if line.endswith(r" \\")]
+    assert found == [r"{[}a] & n \\", r"{[}2pt] & 1 \\", r"{*} & 2 \\", r"{[}x & 3 \\", r"a[* & [4 \\"]
+
+
+def test_groups_may_be_called_like_parts_of_the_report(tmp_path):
+    groups = {"Settings": 1, "Overview": 1, "all": 2, "Settings-2": 1}
+    plan = made.make_plan(groups, ["a", "b", "c"], 2)
+    made.fill(tmp_path, plan, n_records=4, n_points=5)
+    files = write_report(tmp_path, formats="svg")
+    text, _, latex = texts(tmp_path / "report")
+    page = Page(text)
+    assert len(set(page.ids)) == len(page.ids) == text.count("<h2")
+    assert [address[1:] for address in page.addresses if address.startswith("#")] == page.ids
+    assert len(set(re.findall(r"\\label\{(.*?)\}", latex))) == latex.count(r"\label{")
+    assert len(set(files)) == len(files)
+
+
+def test_genes_are_not_read(store, monkeypatch):
+    asked, read = [], Store.read
+    monkeypatch.setattr(Store, "read", lambda self, key, genes=True: asked.append(genes) or read(self, key, genes))
+    collect(store)
+    assert asked and not any(asked)
+
+
+def test_the_definitions_say_what_is_approximate(report):
+    markdown = texts(report)[1]
+    assert "evaluations may exceed it by up to one generation" in markdown
+    assert "chi-square approximation" in markdown and "rounded to nine decimals" in markdown
 
 
 def test_slugs_differ():

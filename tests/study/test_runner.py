@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import os
 import pty
 import random
@@ -124,7 +125,7 @@ def test_failed_runs_stay_unless_they_are_to_be_retried(plan, done, tmp_path):
     assert (outcome.n_run, outcome.n_failed) == (len(bad.runs), n_bad)
     assert len(outcome.messages) == 1
     assert outcome.messages[0].startswith(f"{n_bad} runs were stored as failed, such as the reference on field with seed 0: ")
-    assert outcome.messages[0].endswith("the cells of the map are missing, expected those that were planned with")
+    assert "the cells of the map are missing, expected those that were planned with; --retry-failed" in outcome.messages[0]
     again = run_study(bad, tmp_path)
     assert (again.n_run, again.n_failed, again.messages) == (0, n_bad, outcome.messages)
     retried = run_study(bad, tmp_path, retry_failed=True)
@@ -144,6 +145,39 @@ def test_other_versions_are_told(plan, done, tmp_path):
         "5 stored runs were made with other versions than are installed here "
         f"(pymoo 0.6.1, not {versions()['pymoo']}) and kept as they are"
     ]
+
+
+def test_what_is_stored_is_told_before_anything_runs(plan, done, tmp_path, monkeypatch):
+    store = Store(tmp_path)
+    record = from_bytes(done.path(plan.runs[0].key).read_bytes())
+    record.versions["pymoo"] = "0.6.1"
+    store.write(record.key, to_bytes(record))
+    told = []
+    outcome = run_study(plan, tmp_path, tell=lambda message: told.append((message, len(stored(tmp_path)))))
+    assert [message for message, _ in told] == outcome.messages
+    assert told[0][0].startswith("1 stored run was made with other versions") and told[0][1] == 1
+
+
+def test_a_folder_of_another_study_is_refused_and_a_changed_one_told(plan, done, tmp_path):
+    run_study(make_plan(n_seeds=2), tmp_path, study="name = 'two'")
+    with pytest.raises(GridPathError, match="holds another study, none of whose runs this one asks for; choose another folder"):
+        run_study(make_plan(generations=9), tmp_path)
+    assert (tmp_path / "study.toml").read_text() == "name = 'two'"
+    n_less = len(make_plan(n_seeds=2).runs) - len(make_plan(n_seeds=1).runs)
+    (message,) = run_study(make_plan(n_seeds=1), tmp_path).messages
+    assert message.startswith(f"{n_less} runs were part of the study before and no longer")
+    assert not (tmp_path / "study.toml").exists(), "it was that of another plan"
+
+
+def test_exact_fronts_that_were_cut_short_are_retried(tmp_path):
+    made = make_plan(n_seeds=1)
+    reference = next(run for run in made.runs if run.algorithm is None)
+    store = Store(tmp_path)
+    run_study(made, tmp_path)
+    store.write(reference.key, to_bytes(dataclasses.replace(store.read(reference.key), complete=False)))
+    assert run_study(made, tmp_path).n_run == 0
+    assert run_study(made, tmp_path, retry_failed=True).n_run == 1
+    assert store.read(reference.key).complete
 
 
 def test_a_study_that_grows_runs_what_is_new(plan, done, tmp_path):

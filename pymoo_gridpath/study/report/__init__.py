@@ -11,9 +11,8 @@ from pymoo_gridpath.errors import GridPathError
 
 __all__ = ["write_report"]
 
-# Folder of the figures, and their files, which a later report of fewer groups would leave behind.
+# Folder of the figures.
 _FIGURES = "figures"
-_STALE = ("ratios*", "convergence-*", "attainment-*", "fronts-*", "ranks-*")
 
 
 def write_report(
@@ -42,7 +41,8 @@ def write_report(
     -------
     list of pathlib.Path
         ``index.html`` (everything on one page), ``report.md``, ``tables.tex``, ``runs.csv``, ``problems.csv``, ``summary.csv``,
-        ``tests.csv``, and the figures. The same runs give the same bytes.
+        ``tests.csv``, and the figures. The same runs give the same bytes. Figures that a ``report.md`` of before links and
+        the new one does not are deleted.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def write_report(
         If the folder holds no study, an argument is wrong, or a file cannot be written.
     """
     # Imported here, so that the commands that do not report need not wait for matplotlib.
-    from pymoo_gridpath.study.report.blocks import Picture, latex, markdown
+    from pymoo_gridpath.study.report.blocks import Picture, latex, linked_files, markdown
     from pymoo_gridpath.study.report.contents import Contents
     from pymoo_gridpath.study.report.csv_files import csv_files
     from pymoo_gridpath.study.report.drawing import draw_all
@@ -70,10 +70,15 @@ def write_report(
         raise GridPathError(message) from None
     contents = Contents(results, times)
     blocks = draw_all(contents.blocks(), forms)
-    for pattern in _STALE:
-        for form in ("png", "pdf", "svg"):
-            for file in figures.glob(f"{pattern}.{form}"):
-                file.unlink()
+    pictures = [block for block in blocks if isinstance(block, Picture)]
+    drawn = {f"{picture.name}.{form}": data for picture in pictures for form, data in picture.files.items()}
+    # A report of fewer groups would leave figures of the earlier one behind. Other files may be the user's own.
+    try:
+        earlier = linked_files((directory / "report.md").read_text(encoding="utf-8", errors="replace"), _FIGURES)
+    except OSError:
+        earlier = []
+    for name in set(earlier) - set(drawn):
+        _remove(figures / name)
     texts = {
         "index.html": page(blocks, f"Study {results.plan.name}"),
         "report.md": markdown(blocks, _FIGURES),
@@ -81,5 +86,11 @@ def write_report(
         **csv_files(results, contents.families, times),
     }
     written = [write_whole(directory / name, text.encode()) for name, text in texts.items()]
-    pictures = [block for block in blocks if isinstance(block, Picture)]
-    return written + [write_whole(figures / f"{p.name}.{form}", data) for p in pictures for form, data in p.files.items()]
+    return written + [write_whole(figures / name, data) for name, data in drawn.items()]
+
+
+def _remove(file: Path) -> None:
+    try:
+        file.unlink(missing_ok=True)
+    except OSError as error:
+        raise GridPathError(f"{file}: the file of an earlier report cannot be removed ({error.strerror})") from None

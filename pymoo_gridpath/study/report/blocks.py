@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
@@ -89,12 +90,28 @@ def _markdown(block: Block, folder: str) -> str:
     if isinstance(block, Table):
         return block.markdown()
     if isinstance(block, Picture):
-        caption = escape_markdown(block.caption)
-        form = "png" if "png" in block.files else next(iter(block.files), None)
-        return f"{caption}\n" if form is None else f"![{block.name}]({folder}/{block.name}.{form})\n\n{caption}\n"
+        return _markdown_picture(block, folder)
     if isinstance(block, Fold):
         return f"**{escape_markdown(block.title)}**\n\n{markdown(block.blocks, folder)}"
     raise TypeError(f"a drawing has no text before it is drawn: {block.name}")
+
+
+def _markdown_picture(picture: Picture, folder: str) -> str:
+    """Return a picture with links to all its files, by which `linked_files` finds them."""
+    caption = escape_markdown(picture.caption)
+    if not picture.files:
+        return f"{caption}\n"
+    form = "png" if "png" in picture.files else next(iter(picture.files))
+    others = ", ".join(f"[{other}]({folder}/{picture.name}.{other})" for other in picture.files if other != form)
+    return f"![{picture.name}]({folder}/{picture.name}.{form})\n\n{caption}{f' Also as {others}.' if others else ''}\n"
+
+
+def linked_files(text: str, folder: str) -> list[str]:
+    """Return the names of the figures in a folder that a report in Markdown links; the texts within it link none."""
+    if not text.startswith("# Study "):
+        return []
+    name = r"(?:ratios|convergence|attainment|fronts|ranks)[A-Za-z0-9.-]*\.(?:png|pdf|svg)"
+    return re.findall(rf"\]\({re.escape(folder)}/({name})\)", text)
 
 
 def latex(blocks: Iterable[Block]) -> str:

@@ -16,7 +16,7 @@ from pymoo_gridpath.study.report.statistics import ALPHA
 #: The measures that are tested, with what tables call them and whether larger is better.
 TESTED = {"ratio": ("hypervolume ratio", True), "igd_plus": ("IGD+", False), "turn": ("mean turn", False)}
 
-# Values that differ by less are equal: sums in another order would otherwise break ties.
+# To which values, medians and their differences are rounded: sums in another order would otherwise break ties.
 _DECIMALS = 9
 
 
@@ -70,6 +70,7 @@ class Comparison:
     n_blocks : int
         Problems that all of these have; of a comparison over seeds 1.
     friedman : Friedman or None
+        Of three algorithms or more on two problems or more.
     warnings : list of str
         Sentences.
     """
@@ -117,7 +118,7 @@ class Comparison:
         self.warnings.append(
             f"Too few {'seeds' if self.over == 'seeds' else 'problems'}: with {what} and {count} pair{'s' * (count > 1)} of "
             f"algorithms, the least corrected p value of the {TESTED[self.measure][0]} that any results could have is "
-            f"{least:.3g}, so that nothing can be called significant at {ALPHA:g}; at least {needed} are needed."
+            f"{least:.3g}, so that no pair can be called different at {ALPHA:g}; at least {needed} are needed."
         )
 
 
@@ -191,12 +192,12 @@ def _compare_medians(comparison: Comparison, results: Results, problems: Sequenc
             values = _oriented(results, comparison.measure, k, [problem])
             sizes.add(len(values))
             if len(values):
-                medians[row, column] = np.median(values)
+                medians[row, column] = np.round(np.median(values), _DECIMALS)
         uneven += len(sizes) > 1
     drafts = []
     for i, j in itertools.combinations(range(len(comparison.algorithms)), 2):
         both = ~np.isnan(medians[:, [i, j]]).any(axis=1)
-        d = statistics.paired_differences(medians[both, i], medians[both, j])
+        d = np.round(statistics.paired_differences(medians[both, i], medians[both, j]), _DECIMALS)
         counts = len(d), len(d), int((d > 0).sum()), int((d == 0).sum()), int((d < 0).sum())
         pair = comparison.algorithms[i], comparison.algorithms[j]
         drafts.append(Pair(*pair, *counts, *statistics.wilcoxon(d), math.nan, statistics.rank_biserial(d)))
@@ -208,12 +209,14 @@ def _compare_medians(comparison: Comparison, results: Results, problems: Sequenc
             f"On {uneven} of {len(problems)} problems not all algorithms have the same number of finished runs; "
             "medians are over those that exist."
         )
+    # Of two algorithms, the test of the pair says all there is to say.
+    ranked = len(comparison.algorithms) > 2
     if len(complete) < len(problems):
         comparison.warnings.append(
             f"{len(problems) - len(complete)} of {len(problems)} problems lack finished runs of some algorithm: "
-            "average ranks leave them out, and pairs of algorithms use the problems that both have."
+            f"{'average ranks leave them out, and ' * ranked}pairs of algorithms use the problems that both have."
         )
-    if len(complete) >= 2:
+    if ranked and len(complete) >= 2:
         _rank(comparison, complete)
 
 
@@ -221,7 +224,7 @@ def _rank(comparison: Comparison, medians: np.ndarray) -> None:
     comparison.friedman = statistics.friedman(medians)
     n, k = medians.shape
     least = statistics.least_p_friedman(k, n)
-    if k > 2 and least >= ALPHA:
+    if least >= ALPHA:
         comparison.warnings.append(
             f"Too few problems: Friedman's test of {k} algorithms on {n} problems cannot have a p value below "
             f"{least:.3g}, so that the average ranks cannot be called different."

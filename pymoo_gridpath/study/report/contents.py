@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 from pymoo_gridpath.study.report import settings, summary
@@ -58,7 +58,8 @@ class Contents:
             yield Caution(tuple(cautions))
         yield from settings.settings_blocks(results, self.times)
         yield from self._overview()
-        names = slugs(results.groups)
+        # The tests across all problems are called "all".
+        names = slugs(["all", *results.groups])
         for group, problems in results.groups.items():
             yield from self._group(group, names[group], problems)
         yield from settings.unfinished_blocks(results)
@@ -124,7 +125,9 @@ class Contents:
             "what a quarter and three quarters do, and what any and all do. Runs without a legal path attain nothing."
         )
         n_obj = len(results.plan.problems[problems[0]].spec["objectives"])
-        why = "no run has a legal path" if n_obj == 2 else f"they are drawn for two objectives, and it has {n_obj}"
+        random = any(results.finished(k, problems[:1]) for k in range(len(results.algorithms)) if not results.is_exact(k))
+        nobody = "no run has a legal path" if random else "only exact fronts have finished runs"
+        why = nobody if n_obj == 2 else f"they are drawn for two objectives, and it has {n_obj}"
         draw = partial(plot_attainment, results, problems[0], self.styles)
         yield Drawing(f"attainment-{name}", caption, draw, f"No attainment surfaces on {first}: {why}.")
         caption = (
@@ -132,7 +135,7 @@ class Contents:
         )
         if n_obj > 2:
             caption += f" Of {n_obj} objectives the first two are shown."
-        why = "no run has a legal path" if n_obj > 1 else "it has one objective"
+        why = nobody if n_obj > 1 else "it has one objective"
         draw = partial(plot_fronts, results, problems[0], self.styles)
         yield Drawing(f"fronts-{name}", caption, draw, f"No merged fronts on {first}: {why}.")
 
@@ -189,7 +192,12 @@ class Contents:
 
 def slugs(names: Sequence[str] | dict) -> dict[str, str]:
     """Return for each name one that serves in file names and LaTeX labels, all different whatever the case of letters."""
-    found: dict[str, str] = {}
+    return dict(zip(names, unique_slugs(names), strict=True))
+
+
+def unique_slugs(names: Iterable[str]) -> list[str]:
+    """Return what `slugs` does in the order of the names, which may be equal."""
+    found: list[str] = []
     taken: set[str] = set()
     for name in names:
         base = re.sub(r"[^A-Za-z0-9.-]+", "-", name).strip("-.")[:60] or "group"
@@ -198,5 +206,5 @@ def slugs(names: Sequence[str] | dict) -> dict[str, str]:
             number += 1
             slug = f"{base}-{number}"
         taken.add(slug.lower())
-        found[name] = slug
+        found.append(slug)
     return found

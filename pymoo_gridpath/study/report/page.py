@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import base64
 import html
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from pymoo_gridpath.study.report.blocks import Block, Caution, Fold, Heading, Picture, Text
-from pymoo_gridpath.study.report.contents import slugs
+from pymoo_gridpath.study.report.contents import unique_slugs
 from pymoo_gridpath.study.report.tables import Table
 
 # Of the page for one of a picture.
@@ -47,8 +47,12 @@ def page(blocks: Sequence[Block], title: str) -> str:
         With drawings already drawn.
     title : str
     """
-    anchors = slugs([block.text for block in blocks if isinstance(block, Heading) and block.level == 2])
-    links = "\n".join(f'<li><a href="#{anchor}">{html.escape(text)}</a></li>' for text, anchor in anchors.items())
+    headings = [block.text for block in blocks if isinstance(block, Heading) and block.level == 2]
+    ids = unique_slugs(headings)
+    anchors = iter(ids)
+    links = "\n".join(
+        f'<li><a href="#{anchor}">{html.escape(text)}</a></li>' for text, anchor in zip(headings, ids, strict=True)
+    )
     lines = [
         "<!DOCTYPE html>",
         '<html lang="en">',
@@ -68,11 +72,12 @@ def page(blocks: Sequence[Block], title: str) -> str:
     return "\n".join([*lines, "</body>", "</html>", ""])
 
 
-def _rendered(blocks: Iterable[Block], anchors: dict[str, str]) -> list[str]:
+def _rendered(blocks: Iterable[Block], anchors: Iterator[str]) -> list[str]:
+    """Return the lines of blocks; each heading of level 2 takes the next anchor."""
     lines = []
     for block in blocks:
         if isinstance(block, Heading):
-            anchor = f' id="{anchors[block.text]}"' if block.level == 2 else ""
+            anchor = f' id="{next(anchors)}"' if block.level == 2 else ""
             lines.append(f"<h{block.level}{anchor}>{html.escape(block.text)}</h{block.level}>")
         elif isinstance(block, Text):
             lines.append(f"<p>{html.escape(block.text)}</p>")

@@ -146,6 +146,13 @@ def _strip(ax, values: np.ndarray, place: int, style: AlgorithmStyle) -> None:
 def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
     """Draw a critical-difference diagram: average ranks, and bars that join those that do not differ significantly.
 
+    Parameters
+    ----------
+    friedman : Friedman
+    labels : sequence of str
+        Of the algorithms, three or more.
+    title : str
+
     References
     ----------
     Demsar (2006), Statistical comparisons of classifiers over multiple data sets.
@@ -156,9 +163,9 @@ def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
     bars = [(0, k - 1)] if friedman.p >= ALPHA else cliques(ranks, friedman.critical_difference)
     half = -(-k // 2)
     # In inches, downwards from the axis of the ranks.
-    sides = [0.062 * max(len(name) for name in part) + 0.65 for part in (names[:half], names[half:] or [""])]
+    sides = [0.062 * max(len(name) for name in part) + 0.65 for part in (names[:half], names[half:])]
     left, right = sides[0], WIDTH - sides[1]
-    x = left + (ranks - 1.0) / max(k - 1, 1) * (right - left)
+    x = left + (ranks - 1.0) / (k - 1) * (right - left)
     first_label = 0.2 + 0.11 * len(bars)
     bottom = first_label + 0.2 * (half - 1) + 0.15
     top = -0.72
@@ -170,7 +177,7 @@ def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
     line = {"color": "black", "linewidth": 0.8, "solid_capstyle": "butt"}
     ax.plot([left, right], [0, 0], **line)
     for tick in np.arange(1.0, k + 0.25, 0.5):
-        place, whole = left + (tick - 1.0) / max(k - 1, 1) * (right - left), tick == int(tick)
+        place, whole = left + (tick - 1.0) / (k - 1) * (right - left), tick == int(tick)
         ax.plot([place, place], [0, -0.06 if whole else -0.03], **line)
         if whole:
             ax.text(place, -0.08, f"{tick:.0f}", ha="center", va="bottom")
@@ -183,7 +190,7 @@ def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
         ax.plot([x[place], x[place], edge], [0, depth, depth], **{**line, "linewidth": 0.6})
         text = f"{name}  {rank:.2f}" if on_left else f"{rank:.2f}  {name}"
         ax.text(edge + (-0.04 if on_left else 0.04), depth, text, ha="right" if on_left else "left", va="center")
-    reach = min(0.05, 0.15 * (right - left) / max(k - 1, 1))
+    reach = min(0.05, 0.15 * (right - left) / (k - 1))
     for place, (first, last) in enumerate(bars):
         depth = 0.11 + 0.11 * place
         ax.plot([x[first] - reach, x[last] + reach], [depth, depth], color="black", linewidth=2.6, solid_capstyle="butt")
@@ -193,7 +200,7 @@ def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
 def _draw_difference(ax, difference: float, k: int, left: float, right: float) -> None:
     """Draw the critical difference above the axis, from rank 1 on as far as there is room."""
     fits = difference <= k - 1
-    end = left + min(difference / max(k - 1, 1), 1.0) * (right - left)
+    end = left + min(difference / (k - 1), 1.0) * (right - left)
     line = {"color": "black", "linewidth": 1.2, "solid_capstyle": "butt"}
     ax.plot([left, end], [-0.34, -0.34], **line)
     for place in (left, end) if fits else (left,):

@@ -173,10 +173,6 @@ class Results:
         """Return a measure of the finished runs of an algorithm on some problems."""
         return np.array([getattr(run, measure) for run in self.finished(algorithm, problems)], dtype=float)
 
-    def with_status(self, *status: str) -> list[RunResult]:
-        """Return the runs of a status."""
-        return [run for run in self.runs if run.status in status]
-
 
 def collect(store: Store, target: float | None = None) -> Results:
     """Read and measure the runs of a study.
@@ -190,12 +186,12 @@ def collect(store: Store, target: float | None = None) -> Results:
     Raises
     ------
     GridPathError
-        If there is no plan, or the target is not above 0.
+        If there is no plan, or the target is not above 0, or above 1.
     """
     plan = store.read_plan()
     results = Results(plan, plan.target if target is None else target)
-    if not results.target > 0.0:
-        raise GridPathError(f"target is {target}, expected a hypervolume ratio above 0")
+    if not (isinstance(results.target, int | float) and 0.0 < results.target <= 1.0):
+        raise GridPathError(f"target is {target!r}, expected a hypervolume ratio above 0, at most 1")
     by_problem: list[list[PlannedRun]] = [[] for _ in plan.problems]
     for run in plan.runs:
         by_problem[run.problem].append(run)
@@ -222,11 +218,11 @@ def collect(store: Store, target: float | None = None) -> Results:
 
 
 def _read(store: Store, key: str) -> tuple[RunRecord | None, str]:
-    """Return a record, if there is one, and its status."""
+    """Return a record, if there is one, without its genes, and its status."""
     if not store.path(key).exists():
         return None, "missing"
     try:
-        record = store.read(key)
+        record = store.read(key, genes=False)
     except DamagedRecordError:
         return None, "damaged"
     return record, record.status

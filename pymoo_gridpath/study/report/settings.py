@@ -125,6 +125,8 @@ def definition_blocks(results: Results, times: bool) -> list[Block]:
         "Mean turn: the mean total turn, in degrees, of the paths of the final front, the one that turns least for each of its "
         "points; infinite without a legal path. It tells how smooth paths are where turn is no objective.",
         "Feasible: the share of finished runs that end with a legal path.",
+        "Budget: runs end with the generation in which the budget is reached, so that evaluations may exceed it by up to one "
+        "generation.",
         "To target: what a run had spent at the first stored record of its history whose ratio is at least "
         f"{results.target:g}. Histories keep up to about a hundred records a run, so that this is late by at most the step "
         "between two. A run that did not reach it counts as infinite in medians and quartiles.",
@@ -133,8 +135,10 @@ def definition_blocks(results: Results, times: bool) -> list[Block]:
         "(2000). Several problems: Wilcoxon signed-rank tests over the problems' medians, zeros left out, with the "
         "matched-pairs rank-biserial correlation (Kerby, 2014). Both are two-sided and exact for the ties at hand, but for "
         "large samples, where the normal approximation serves. p values are corrected by Holm's method (1979) for all pairs "
-        "of a table. Values that differ by less than 1e-9 are equal. The level is 0.05.",
-        "Average ranks: Friedman's test over the problems' medians, and Nemenyi's critical difference at 0.05 (Demsar, 2006).",
+        "of a table. Values are rounded to nine decimals. The level is 0.05.",
+        "Average ranks, of three algorithms or more on several problems: Friedman's test over the problems' medians, and "
+        "Nemenyi's critical difference at 0.05 (Demsar, 2006). The p value of Friedman's test is the chi-square "
+        "approximation, which is rough for few problems.",
         "The exact front draws no random number, has one run a problem, and is not part of the tests.",
     ]
     if times:

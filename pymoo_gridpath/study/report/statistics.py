@@ -17,7 +17,7 @@ from scipy import stats
 ALPHA = 0.05
 
 # From this product of the sizes of two samples on, the normal approximation serves.
-_MOST_PAIRS = 2500
+_MOST_PAIRS = 900
 
 # From this number of differences on, the normal approximation serves.
 _MOST_DIFFERENCES = 400
@@ -72,15 +72,17 @@ def mann_whitney(x: np.ndarray, y: np.ndarray) -> TestResult:
         return TestResult(u, 1.0)
     if n * m > _MOST_PAIRS:
         return TestResult(u, float(stats.mannwhitneyu(x, y, method="asymptotic").pvalue))
-    # Twice the ranks are integers, ties or not. ways[j, s]: in how many ways j of them have the sum s.
+    # Twice the ranks are integers, ties or not. ways[j, s]: in how many ways j of them have the sum s. Of the smaller sample,
+    # which has the same p value and fewer ways.
     doubled = np.rint(2 * ranks).astype(int)
-    observed = int(doubled[:n].sum())
-    size = int(np.sort(doubled)[-n:].sum()) + 1
-    ways = np.zeros((n + 1, size))
+    smaller = doubled[:n] if n <= m else doubled[n:]
+    few = len(smaller)
+    size = int(np.sort(doubled)[-few:].sum()) + 1
+    ways = np.zeros((few + 1, size))
     ways[0, 0] = 1.0
     for rank in doubled:
         ways[1:, rank:] += ways[:-1, : size - rank].copy()
-    return TestResult(u, _two_sided(ways[n] / math.comb(n + m, n), observed))
+    return TestResult(u, _two_sided(ways[few] / math.comb(n + m, few), int(smaller.sum())))
 
 
 def wilcoxon(differences: np.ndarray) -> TestResult:
@@ -187,13 +189,12 @@ def friedman(values: np.ndarray) -> Friedman:
     Parameters
     ----------
     values : numpy.ndarray, shape (n, k)
-        One row a problem, one column an algorithm, larger being better; at least two of each.
+        One row a problem, one column an algorithm, larger being better; at least two problems and three algorithms.
 
     Returns
     -------
     Friedman
-        Of two algorithms Friedman's test is the sign test's approximation, so that `wilcoxon` should be asked instead; the
-        p value is then NaN.
+        Its p value is the chi-square approximation, which is rough for few problems.
 
     References
     ----------
@@ -203,8 +204,6 @@ def friedman(values: np.ndarray) -> Friedman:
     ranks = stats.rankdata(-values, axis=1)
     average = ranks.mean(axis=0)
     difference = critical_difference(k, n)
-    if k < 3:
-        return Friedman(average, math.nan, math.nan, difference)
     if np.all(ranks == ranks[:, :1]):
         return Friedman(average, 0.0, 1.0, difference)
     # Of ranks, whose ties scipy sees as well as those of the values, and which have no infinite ones.

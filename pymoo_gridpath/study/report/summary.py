@@ -129,8 +129,6 @@ def friedman_sentence(comparison: Comparison) -> str:
     assert comparison.friedman is not None
     outcome, k = comparison.friedman, len(comparison.algorithms)
     difference = f"Nemenyi's critical difference at 0.05 is {outcome.critical_difference:.3f}."
-    if k < 3:
-        return f"Friedman's test needs three algorithms; Wilcoxon's test tells two apart. {difference}"
     p = probability(outcome.p)
     p = "p < 0.001" if p.startswith("<") else f"p = {p}"
     verdict = "" if outcome.p < 0.05 else " The ranks do not differ significantly."
@@ -165,6 +163,8 @@ def _better_than(comparison: Comparison, algorithm: int) -> str:
 
 
 def _explain_better(comparison: Comparison) -> str:
+    if not comparison.pairs:
+        return "There are no two algorithms with finished runs to compare."
     if not comparison.could_tell:
         return "No test could tell the algorithms apart with so few values, whatever these were."
     test = "Mann-Whitney, over runs" if comparison.over == "seeds" else "Wilcoxon signed-rank, over the medians of problems"

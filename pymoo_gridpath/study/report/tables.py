@@ -6,6 +6,7 @@ import csv
 import html
 import io
 import math
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -124,7 +125,9 @@ def _markdown_row(cells: Sequence[str]) -> str:
 
 
 def _latex_row(cells: Sequence[str]) -> str:
-    return " & ".join(escape_latex(cell) for cell in cells) + r" \\"
+    row = " & ".join(escape_latex(cell) for cell in cells)
+    # The command at the end of the line before, \\ or \midrule, would take these for its argument.
+    return re.sub(r"^\s*([\[*])", r"{\1}", row) + r" \\"
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence]) -> str:

@@ -75,6 +75,8 @@ def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[Occupan
     """Return the grid of a problem as it was read, and its queries with what tells them apart."""
     scen = None if spec.scen is None else study.folder / spec.scen
     known = None
+    if scen is not None and not scen.is_file():
+        raise study.error(f"{scen}: no such file, expected a .scen file of queries", (*place_of(k), "scen"))
     if spec.grid is not None:
         grid = spec.grid
     else:
