@@ -7,8 +7,6 @@ hold all paths to the front, and the least turn among them follows from the star
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
@@ -19,8 +17,11 @@ from pymoo_gridpath.search import HEADINGS, Moves, turn_units
 # More than any path turns.
 _NEVER = np.iinfo(np.int32).max // 2
 
-# Bytes of a closed label while the labels are put in order, and of one that leads to the front, besides.
-_BYTES_OF_CLOSED, _BYTES_OF_LEADING = 8 + 16 + 4 + 4, 2 * 4 + 8 * (4 + 4 + 1)
+# Bytes of a closed label while the labels are put in order, and of one that leads to the ends at hand, besides.
+_BYTES_OF_CLOSED, _BYTES_OF_LEADING = 8 + 16 + 4 + 4, 2 * 4 + 8 + 8 * (4 + 4 + 1)
+
+# Ends are taken together until this share of the labels, or this number, leads to them: they have beginnings in common.
+_SHARE_AT_A_TIME, _LEAST_AT_A_TIME = 1 / 16, 2**9
 
 
 def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.ndarray, meter: Meter) -> list[np.ndarray] | None:
@@ -51,18 +52,22 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
     cell, spent = _spent(closed, place, moves.width, heading_of, costs.step, costs.field)
     start, end = place[0], place[ends]
     del place
-    labels: Any
-    # From here on labels are known by their place in the order of the cells, and those that lead to the ends by their slot.
-    labels, slot, parents = _leading_to(end, cell, spent, first, moves.legal, moves.offsets, costs.step, costs.field)
-    start, end = slot[start], slot[end]
-    order = np.lexsort((spent[labels, 1], spent[labels, 0]))
-    cell = cell[labels]
-    meter.note(len(closed), len(closed) * _BYTES_OF_CLOSED + parents.nbytes + labels.nbytes)
-    del spent, slot
-    turn = np.full((len(labels), 8), _NEVER, dtype=np.int32)
-    before = np.full((len(labels), 8), -1, dtype=np.int8)
-    _least_turns(order, parents, start, turn_units(), turn, before)
-    return [_trace(cell, parents, start, turn, before, k) for k in end]
+    grid = moves.legal, moves.offsets, costs.step, costs.field
+    slot = np.full(len(closed), -1, dtype=np.int32)
+    at_a_time = max(_LEAST_AT_A_TIME, int(len(closed) * _SHARE_AT_A_TIME))
+    paths: list[np.ndarray] = []
+    while len(paths) < len(end):
+        # From here on labels are known by their place in the order of the cells, and those that lead to the ends by their slot.
+        labels, parents, n = _leading_to(end[len(paths) :], at_a_time, cell, spent, first, *grid, slot)
+        order = np.lexsort((spent[labels, 1], spent[labels, 0]))
+        turn = np.full((len(labels), 8), _NEVER, dtype=np.int32)
+        before = np.full((len(labels), 8), -1, dtype=np.int8)
+        _least_turns(order, parents, slot[start], turn_units(), turn, before)
+        cells = cell[labels]
+        paths += [_trace(cells, parents, slot[start], turn, before, slot[k]) for k in end[len(paths) : len(paths) + n]]
+        slot[labels] = -1
+        meter.note(len(closed), len(closed) * _BYTES_OF_CLOSED + len(labels) * _BYTES_OF_LEADING)
+    return paths
 
 
 @kernel
@@ -121,33 +126,39 @@ def _parent(label, m, cell, spent, first, legal, offsets, step, field):
 
 
 @kernel
-def _leading_to(ends, cell, spent, first, legal, offsets, step, field):
-    """Return the labels on paths to the ends, the slot of each label among them, and the slots of their parents by heading."""
-    slot = np.full(len(cell), -1, dtype=np.int32)
+def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field, slot):
+    """Return the labels on paths to the first so many ends, the slots of their parents by heading, and how many ends these are.
+
+    The slot of each of those labels is filled in.
+    """
     labels = np.empty(1024, dtype=np.int32)
+    parents = np.full((1024, 8), -1, dtype=np.int32)
     n = 0
-    for end in ends:
+    i = 0
+    n_ends = 0
+    while n_ends < len(ends) and n < at_a_time:
+        end = ends[n_ends]
+        n_ends += 1
         if n == len(labels):
             labels = _doubled(labels)
-        slot[end] = n
-        labels[n] = end
-        n += 1
-    parents = np.full((1024, 8), -1, dtype=np.int32)
-    i = 0
-    while i < n:
-        if n + 8 > len(labels):
-            labels = _doubled(labels)
-        if i == len(parents):
-            parents = _doubled(parents)
-        for m in range(8):
-            parent = _parent(labels[i], m, cell, spent, first, legal, offsets, step, field)
-            if parent >= 0 and slot[parent] < 0:
-                slot[parent] = n
-                labels[n] = parent
-                n += 1
-            parents[i, m] = slot[parent] if parent >= 0 else -1
-        i += 1
-    return labels[:n].copy(), slot, parents[:n].copy()
+        if slot[end] < 0:
+            slot[end] = n
+            labels[n] = end
+            n += 1
+        while i < n:
+            if n + 8 > len(labels):
+                labels = _doubled(labels)
+            if i == len(parents):
+                parents = _doubled(parents)
+            for m in range(8):
+                parent = _parent(labels[i], m, cell, spent, first, legal, offsets, step, field)
+                if parent >= 0 and slot[parent] < 0:
+                    slot[parent] = n
+                    labels[n] = parent
+                    n += 1
+                parents[i, m] = slot[parent] if parent >= 0 else -1
+            i += 1
+    return labels[:n].copy(), parents[:n].copy(), n_ends
 
 
 @kernel

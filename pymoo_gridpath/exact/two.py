@@ -38,11 +38,11 @@ _ROUNDING = 1e-12
 
 # The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
 # They ask the less the later they come; several pay only on large grids.
-_TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.03, 0.01, 0.003, 0.001)
+_TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.03, 0.01, 0.004, 0.0015)
 _LARGE = 2**17
 
 # Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.
-_CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**13, 12, 32
+_CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
 
 _POPS_AT_A_TIME = 2**18
 _GROWTH = 1.25
