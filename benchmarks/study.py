@@ -230,7 +230,8 @@ def overhead(folder: Path) -> None:
             minimize(problem, build_algorithm(task.algorithm, problem), build_termination(task.budget or {}), seed=task.seed)
 
     def studied(runs) -> None:
-        run_study(dataclasses.replace(plan, runs=runs), folder / "study")
+        # A folder of their own, since it holds one study.
+        run_study(dataclasses.replace(plan, runs=runs), folder / runs[0].key)
 
     pairs = []
     for number in range(N_PAIRS):
