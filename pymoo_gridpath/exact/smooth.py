@@ -7,6 +7,8 @@ hold all paths to the front, and the least turn among them follows from the star
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
@@ -56,6 +58,7 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
     slot = np.full(len(closed), -1, dtype=np.int32)
     at_a_time = max(_LEAST_AT_A_TIME, int(len(closed) * _SHARE_AT_A_TIME))
     paths: list[np.ndarray] = []
+    labels: Any
     while len(paths) < len(end):
         # From here on labels are known by their place in the order of the cells, and those that lead to the ends by their slot.
         labels, parents, n = _leading_to(end[len(paths) :], at_a_time, cell, spent, first, *grid, slot)
