@@ -391,7 +391,7 @@ def test_the_record_says_what_made_it(results):
     entry = settings["runs"][0]
     assert (entry["algorithm"], entry["pop_size"], entry["generations"], entry["evaluations"]) == ("NSGA2", 60, 25, 1500)
     assert entry["operators"]["crossover"]["name"] == "DiscreteSBX"
-    assert set(meta["versions"]) == {"python", "pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore"}
+    assert set(meta["versions"]) == {"python", "pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore", "numba"}
 
 
 def test_the_digest_tells_maps_apart():

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import math
-import platform
-from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 
 from pymoo_gridpath.grid import OccupancyGrid
-
-_PACKAGES = ("pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore")
 
 
 def grid_digest(grid: OccupancyGrid) -> str:
@@ -80,17 +76,6 @@ def describe_run(result) -> dict:
             if operator is not None
         },
     }
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that decide about the result."""
-    found = {"python": platform.python_version()}
-    for package in _PACKAGES:
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            found[package] = "unknown"
-    return found
 
 
 def plain(value):

@@ -17,6 +17,7 @@ from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures, require_path_problem
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import clearance
+from pymoo_gridpath.versions import versions
 
 #: What members of a trade-off set go by, in the order in which tables and figures show them.
 NAMES = ("shortest", "safest", "smoothest", "knee")
@@ -369,5 +370,5 @@ def _meta(problem, settings: Mapping | None, runs: list[dict]) -> dict:
     meta["settings"].update(settings or {})
     seeds = [run["seed"] for run in runs]
     meta["seed"] = seeds[0] if len(seeds) == 1 else seeds or None
-    meta["versions"] = provenance.versions()
+    meta["versions"] = versions()
     return meta

@@ -15,8 +15,8 @@ from concurrent.futures import Future
 from typing import Any
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study.execute import versions
 from pymoo_gridpath.study.executors import StudyExecutor, describe
+from pymoo_gridpath.versions import versions
 
 # Both are expressions for `eval`, so that neither scheduler nor workers need this package to read them: a scheduler never does,
 # and a worker that lacks it can say so.

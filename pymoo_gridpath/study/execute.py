@@ -10,7 +10,6 @@ import time
 import traceback
 from datetime import UTC, datetime
 from functools import lru_cache
-from importlib import metadata
 from typing import Any
 
 import moocore
@@ -21,12 +20,12 @@ from pymoo_gridpath.compiled import COMPILED
 from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
 from pymoo_gridpath.study.plan import Task
 from pymoo_gridpath.study.record import History, RunRecord, to_bytes
+from pymoo_gridpath.versions import versions
 
 #: Most records of a history: beyond that, every second one is dropped, and from then on half as many are made.
 MAX_RECORDS = 100
 # Of a traceback; the end says what happened.
 _MAX_MESSAGE = 20_000
-_PACKAGES = ("pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore", "numba")
 # Kinds of runs that this process has warmed up for.
 _warm: set[tuple] = set()
 
@@ -275,18 +274,6 @@ def _spans(fronts: list[np.ndarray]) -> tuple[list[np.ndarray], list[int], list[
             still[name] = index
         standing = still
     return points, first, last
-
-
-@lru_cache(maxsize=1)
-def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that decide about the result."""
-    found = {"python": platform.python_version()}
-    for package in _PACKAGES:
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            found[package] = "none"
-    return found
 
 
 @lru_cache(maxsize=1)

@@ -10,13 +10,14 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from dataclasses import dataclass
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study.execute import execute, failed_run, versions
+from pymoo_gridpath.study.execute import execute, failed_run
 from pymoo_gridpath.study.executors import describe, study_executor
 from pymoo_gridpath.study.plan import Plan, PlannedRun
 from pymoo_gridpath.study.progress import StudyProgress
 from pymoo_gridpath.study.record import read_meta
 from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.study.store import Store, StoredRuns
+from pymoo_gridpath.versions import versions
 
 #: How often a run is given out before it is given up, if what carries it out fails.
 MAX_ATTEMPTS = 3

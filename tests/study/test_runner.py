@@ -15,11 +15,11 @@ import pytest
 from small_studies import Coordinator, make_plan, same_runs, stored, wait_until, without_grids
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study.execute import versions
 from pymoo_gridpath.study.progress import StudyProgress, duration, remaining_seconds
 from pymoo_gridpath.study.record import from_bytes, to_bytes
 from pymoo_gridpath.study.runner import run_study
 from pymoo_gridpath.study.store import Store
+from pymoo_gridpath.versions import versions
 
 N_KILLS = 4
 
