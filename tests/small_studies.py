@@ -22,11 +22,13 @@ HISTORY = ("evaluations", "n_legal", "n_members", "best_length", "points", "firs
 FOUND = ("status", "complete", "n_eval", "n_gen", "n_legal", "n_members", "objectives")
 
 _COORDINATOR = """
-import pickle, sys
+import pickle, signal, sys
 from pymoo_gridpath.study.executors import LocalProcesses
 from pymoo_gridpath.study.runner import run_study
 
 if __name__ == "__main__":
+    # Processes that are started in the background may have been told to ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     plan, folder, n_processes = sys.argv[1:]
     with open(plan, "rb") as file:
         plan = pickle.load(file)
