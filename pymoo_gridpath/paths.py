@@ -111,13 +111,15 @@ class ColumnPaths:
 
         Parameters
         ----------
-        sums : numpy.ndarray, shape (n_columns, n_rows + 1)
-            The field as `MonotoneFrame.prefix_sums` returns it.
+        sums : numpy.ndarray, shape (n_columns, n_rows + 1) or (height * width,)
+            The field as `MonotoneFrame.prefix_sums` returns it, or by the index of the cell, which is slower.
 
         Returns
         -------
         numpy.ndarray, shape (N,)
         """
+        if sums.ndim == 1:
+            return _sums(sums.take(self.sequences.cells), self.sequences.offsets)
         flat = sums.ravel()
         low, high = self._runs
         return (flat.take(high) - flat.take(low)).sum(axis=1)
@@ -149,7 +151,7 @@ class ColumnPaths:
             rows.append(run)
         return self.frame.to_cells(np.concatenate(columns), np.concatenate(rows))
 
-    @property
+    @functools.cached_property
     def sequences(self) -> Sequences:
         """The cells that the paths visit, in order, as `Sequences`."""
         n_cells = np.abs(self._climb) + 1
@@ -241,7 +243,7 @@ class CellPaths:
 
     def _sum(self, values: np.ndarray) -> np.ndarray:
         """Return the sum over each path of a value for each of its cells, or of the steps from them, shape (N,)."""
-        return np.add.reduceat(values, self.sequences.offsets[:-1]) if len(self) else values[:0]
+        return _sums(values, self.sequences.offsets)
 
     @functools.cached_property
     def n_diagonal(self) -> np.ndarray:
@@ -307,3 +309,8 @@ class CellPaths:
         """Return the grid cells (x, y) of one path in the order in which it visits them, int, shape (n_cells, 2)."""
         visited = self[index : index + 1 or None].sequences.cells
         return np.stack([visited % self.grid.width, visited // self.grid.width], axis=-1)
+
+
+def _sums(values: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Return the sum of the values of each path, which begin at its offset, shape (N,)."""
+    return np.add.reduceat(values, offsets[:-1]) if len(offsets) > 1 else values[:0]

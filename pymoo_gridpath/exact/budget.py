@@ -16,7 +16,6 @@ from pymoo_gridpath.errors import GridPathError
 # Share of the free memory that a search may take by default; the rest is for its end, and for others.
 _SHARE = 0.7
 
-
 # Labels are numbered in 32 bits.
 _MOST_LABELS = 2**31 - 2**20
 
@@ -45,7 +44,7 @@ class Budget:
     Attributes
     ----------
     max_seconds : float, optional
-        Asked between the backward searches that give the bounds, and many times a second after them.
+        Asked many times a second.
     max_labels : int, optional
         Labels open and closed at a time.
     max_memory : int, optional
@@ -113,11 +112,17 @@ class Meter:
     def check(self, n_labels: int = 0, n_bytes: int = 0) -> None:
         """Set `message` if a budget is used up."""
         self.note(n_labels, n_bytes)
-        if self.elapsed >= self.seconds:
-            self.message = f"the time budget of {self.seconds:g} s is used up"
-        elif n_labels >= self.labels:
+        if self.stop():
+            return
+        if n_labels >= self.labels:
             self.message = f"the budget of {self.labels:,} labels is used up"
         elif self.n_fixed + n_bytes >= self.memory:
             self.message = f"the memory budget of {self.memory / 2**20:.3g} MiB is used up"
+
+    def stop(self) -> bool:
+        """Set `message` if the time is used up or who watches wants an end; return whether it is set."""
+        if self.elapsed >= self.seconds:
+            self.message = f"the time budget of {self.seconds:g} s is used up"
         elif self.watch is not None and self.watch(self):
             self.message = "stopped by who watched it"
+        return bool(self.message)

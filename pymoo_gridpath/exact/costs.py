@@ -22,9 +22,6 @@ _LARGEST_SUM = 2.0**58
 # Bits, from the first of the largest cost, that costs may have to be taken as they are; potentials of the package have 33.
 _BITS = 44
 
-# Between costs further apart than this, sums would lose the smaller ones.
-_WIDEST = 2.0**32
-
 
 class Costs(NamedTuple):
     """k objectives as costs of steps and of cells.
@@ -57,24 +54,27 @@ class Costs(NamedTuple):
         )
 
 
-def integer_costs(objectives, grid: OccupancyGrid) -> Costs:
+def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = None) -> Costs:
     """Return objectives as whole numbers.
 
     Lengths are counted in 1 / `LENGTH_UNIT` cells and turns in 45 degrees. Costs of cells are counted in a power of two if they
     have no more than 44 bits, as potentials have, else in the one of 0.1, 0.01, ..., 1e-9 of which they are multiples; if there
-    is none, they are rounded to a power of two, at most 2**-57 of their sum over all free cells.
+    is none, they are rounded to a power of two, at most 2**-57 of their sum over all usable cells.
 
     Parameters
     ----------
     objectives : sequence of Objective
     grid : OccupancyGrid
+    usable : numpy.ndarray of bool, shape (n_cells,), optional
+        The cells that paths may visit, by default all that are free; the others cost nothing.
 
     Raises
     ------
     CapabilityError
         If an objective does not add up along a path: it is neither `Length` nor `Turn` and has no field, or a field that is
-        negative or not finite.
+        negative or not finite; or if the sum of a field over all usable cells is not finite.
     """
+    usable = ~grid.occupied.ravel() if usable is None else usable
     step = np.zeros((len(objectives), 9, 8), dtype=np.int64)
     field = np.zeros((len(objectives), grid.width * grid.height), dtype=np.int64)
     unit, rounded = np.ones(len(objectives)), np.zeros(len(objectives), dtype=bool)
@@ -86,11 +86,11 @@ def integer_costs(objectives, grid: OccupancyGrid) -> Costs:
             step[k] = turn_units()
             unit[k] = TURN_UNIT
         else:
-            field[k], unit[k], rounded[k] = _field(objective, grid)
+            field[k], unit[k], rounded[k] = _field(objective, grid, usable)
     return Costs(step, field, any(type(objective) is Turn for objective in objectives), unit, rounded)
 
 
-def _field(objective: Objective, grid: OccupancyGrid) -> tuple[np.ndarray, float, bool]:
+def _field(objective: Objective, grid: OccupancyGrid, usable: np.ndarray) -> tuple[np.ndarray, float, bool]:
     """Return the costs of cells, their unit, and whether they had to be rounded."""
     values = objective.field(grid)
     if values is None:
@@ -98,33 +98,28 @@ def _field(objective: Objective, grid: OccupancyGrid) -> tuple[np.ndarray, float
             f"the objective {objective.name!r} has no field, so it does not add up along a path and no exact front is known; "
             f"expected length, turn, or objectives that are sums of a field over the visited cells"
         )
-    free = np.where(grid.occupied, 0.0, values).ravel()
+    free = np.where(usable, np.ravel(values), 0.0)
     if not np.isfinite(free).all() or free.min() < 0:
         raise CapabilityError(
             f"the field of the objective {objective.name!r} has negative or infinite values in free cells, expected costs of "
             f"zero or more for an exact front"
         )
-    unit, rounded = _unit(free)
-    if unit is None:
+    with np.errstate(over="ignore"):
+        total = free.sum()
+    if not np.isfinite(total):
         raise CapabilityError(
-            f"the field of the objective {objective.name!r} has values from {free[free > 0].min():g} to {free.max():g}, too "
-            f"far apart to be added up exactly; mark the dearest cells as occupied instead"
+            f"the field of the objective {objective.name!r} has values up to {free.max():g}, whose sum over the free cells "
+            f"is more than a floating point number can hold; expected smaller ones for an exact front"
         )
+    unit, rounded = _unit(free, total)
     return np.rint(free / unit).astype(np.int64), unit, rounded
 
 
-def _unit(values: np.ndarray) -> tuple[float | None, bool]:
-    """Return the unit in which values are counted, and whether they are rounded to it.
-
-    The unit is None if the sum of the values overflows or the smaller half of them would be lost in it.
-    """
-    with np.errstate(over="ignore"):
-        total = values.sum()
+def _unit(values: np.ndarray, total: float) -> tuple[float, bool]:
+    """Return the unit in which values with a sum are counted, and whether they are rounded to it."""
     if total == 0.0:
         return 1.0, False
-    if not np.isfinite(total):
-        return None, True
-    finest = max(2.0 ** np.ceil(np.log2(total) - np.log2(_LARGEST_SUM)), np.finfo(float).tiny)
+    finest = max(2.0 ** np.ceil(np.log2(total) - np.log2(_LARGEST_SUM)), np.finfo(float).smallest_subnormal)
     # Numbers that need more bits than these are taken for results of a calculation, with its noise in their last bits.
     short = max(finest, 2.0 ** (np.ceil(np.log2(values.max())) - _BITS))
     if (np.rint(values / short) * short == values).all():
@@ -132,4 +127,4 @@ def _unit(values: np.ndarray) -> tuple[float | None, bool]:
     for per_one in (10**k for k in range(1, 10)):
         if total * per_one <= _LARGEST_SUM and (np.rint(values * per_one) / per_one == values).all():
             return 1 / per_one, False
-    return None if values.max() > _WIDEST * np.median(values[values > 0]) else float(finest), True
+    return float(finest), True

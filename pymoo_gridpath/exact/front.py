@@ -9,10 +9,11 @@ import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.exact.budget import Budget, Meter
-from pymoo_gridpath.exact.costs import Costs, integer_costs
+from pymoo_gridpath.exact.costs import integer_costs
 from pymoo_gridpath.exact.three import front_of_three
-from pymoo_gridpath.exact.two import Front, front_of_two
+from pymoo_gridpath.exact.two import front_of_two
 from pymoo_gridpath.objectives import Length, Turn
+from pymoo_gridpath.search import Moves
 from pymoo_gridpath.search.sequences import Sequences
 
 # Lengths of paths across more cells could overflow.
@@ -21,8 +22,14 @@ _MOST_CELLS = 2**24
 # By which share of the largest a score may differ from the sum that was minimised.
 _SAME = 1e-9
 
-# Of objectives whose costs had to be rounded, values that differ by no more than this share of the largest are equal.
+# Of objectives whose costs had to be rounded, values that differ by no more than this share of themselves are equal.
 _EQUAL = 1e-12
+
+# Rounded costs of paths below so many units are counted anew in a finer one.
+_FINE = 2**42
+
+# A finer unit is worth a search if it is at most this share of the one before.
+_FINER = 1 / 16
 
 
 @dataclass(frozen=True)
@@ -35,8 +42,8 @@ class ExactResult:
         A path for each point, as genes.
     F : numpy.ndarray of float, shape (N, n_obj)
         The front, in ascending order of the first objective, no point twice. If it is not complete, points that are mutually
-        non-dominated: of two objectives the two ends of the front and the best paths between them that were found, which may
-        lie off the front; of three a part of the front.
+        non-dominated: of two objectives the two ends of the front, unless the time was too short even for these, and the best
+        paths between them that were found, which may lie off the front; of three a part of the front.
     complete : bool
         Whether this is the whole front.
     message : str
@@ -90,19 +97,10 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     moves = problem.representation.moves
     if moves.n_cells >= _MOST_CELLS:
         raise CapabilityError(f"the grid has {moves.n_cells:,} cells, expected fewer than {_MOST_CELLS:,} for an exact front")
-    costs = integer_costs(problem.objectives, problem.grid)
-    # Searches are quickest with the length first, and turns have to come last.
-    order = sorted(range(problem.n_obj), key=lambda k: _place(problem.objectives[k]))
     meter = Meter(budget or Budget())
-    start, goal = moves.index(problem.start), moves.index(problem.goal)
-    if problem.n_obj == 3:
-        front = front_of_three(moves, costs.take(order), start, goal, meter)
-    else:
-        # A single objective is searched as two equal ones.
-        front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
-    points = front.points[:, np.argsort(order)]
+    parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter)
     seconds = meter.elapsed
-    X, F = _scored(problem, costs, front, points)
+    X, F = _scored(problem, parts)
     if meter.message:
         message = f"ended early, {meter.message}; {len(F)} paths found"
     elif len(F):
@@ -118,15 +116,59 @@ def _place(objective) -> int:
     return 2 if type(objective) is Turn else 1
 
 
-def _scored(problem, costs: Costs, front: Front, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+@dataclass(frozen=True)
+class _Part:
+    """Paths that a search found, what it says of their objectives, shape (N, n_obj), and by how much rounding may be off."""
+
+    paths: list[np.ndarray]
+    F: np.ndarray
+    off: np.ndarray
+
+
+def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, first: int = 0) -> list[_Part]:
+    """Return fronts of paths over usable cells, bool, shape (n_cells,), that together hold the front of all of them.
+
+    Where costs have to be rounded, the cheapest paths may lose most of theirs. These visit no cell that costs more than they
+    do: a search among the cells that are left has a finer unit, and so on. Only objectives from the one with the number
+    ``first`` on are counted in finer units.
+    """
+    costs = integer_costs(problem.objectives, problem.grid, usable)
+    start, goal = moves.index(problem.start), moves.index(problem.goal)
+    # Searches are quickest with the length first, and turns have to come last.
+    order = sorted(range(problem.n_obj), key=lambda k: _place(problem.objectives[k]))
+    if problem.n_obj == 3:
+        front = front_of_three(moves, costs.take(order), start, goal, meter)
+    else:
+        # A single objective is searched as two equal ones.
+        front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
+    points = front.points[:, np.argsort(order)] + costs.field[:, start]
+    parts, kept = [], np.ones(len(points), dtype=bool)
+    for k in np.flatnonzero(costs.rounded):
+        if k < first or meter.message:
+            continue
+        # The rounding of each cell may have hidden a path that costs a little more.
+        dearest = points[:, k] + moves.n_cells
+        values = np.sort(costs.field[k, usable])
+        left = np.cumsum(values)[np.searchsorted(values, dearest, side="right") - 1]
+        cheap = (points[:, k] < _FINE) & (left <= _FINER * values.sum())
+        if cheap.any():
+            within = usable & (costs.field[k] <= dearest[cheap].max())
+            parts += _search(problem, moves.within(within), within, meter, int(k))
+            kept &= ~cheap | bool(meter.message)
+    paths = [front.paths[k] for k in np.flatnonzero(kept)]
+    lengths = np.array([len(path) for path in paths]).reshape(-1, 1)
+    return [*parts, _Part(paths, points[kept] * costs.unit, lengths * costs.unit * costs.rounded)]
+
+
+def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray]:
     """Return genes and objectives of paths in ascending order, without those that exceed a potential limit."""
-    offsets = np.cumsum([0, *(len(path) for path in front.paths)])
-    cells = np.concatenate(front.paths) if front.paths else np.empty(0, dtype=np.int64)
+    paths = [path for part in parts for path in part.paths]
+    offsets = np.cumsum([0, *(len(path) for path in paths)])
+    cells = np.concatenate(paths) if paths else np.empty(0, dtype=np.int64)
     X = problem.representation.from_sequences(Sequences(cells, offsets))
     F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
-    start = costs.field[:, problem.representation.moves.index(problem.start)]
-    expected = (points + start) * costs.unit
-    close = np.abs(F - expected) <= _SAME * np.abs(expected).max(axis=0, initial=0.0)
+    expected, off = (np.concatenate([getattr(part, name) for part in parts]) for name in ("F", "off"))
+    close = np.abs(F - expected) <= _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
     if not close.all():
         wrong = problem.objective_names[np.flatnonzero(~close.all(axis=0))[0]]
         raise GridPathError(
@@ -134,12 +176,22 @@ def _scored(problem, costs: Costs, front: Front, points: np.ndarray) -> tuple[np
             f"field of None then"
         )
     keep = np.lexsort(F.T[::-1])
-    if len(F) and costs.rounded.any():
-        # Where costs had to be rounded, points may differ by no more than that; they count as one.
+    rounded = np.flatnonzero(off.any(axis=0))
+    if len(rounded):
         compared = F[keep]
-        compared[:, costs.rounded] = np.rint(F[keep][:, costs.rounded] / (_EQUAL * F.max(axis=0)[costs.rounded]))
+        for k in rounded:
+            compared[:, k] = _ranks(compared[:, k])
         keep = keep[moocore.is_nondominated(compared)]
     if problem.obstacles == "limit":
         k = problem.objective_names.index("vulnerability")
         keep = keep[F[keep, k] <= problem.potential_limit]
     return X[keep], F[keep]
+
+
+def _ranks(values: np.ndarray) -> np.ndarray:
+    """Return the ranks of values, the same for those that rounding alone may have made different."""
+    order = np.argsort(values)
+    apart = np.diff(values[order]) > _EQUAL * values[order[1:]]
+    ranks = np.empty(len(values))
+    ranks[order] = np.concatenate([[0], np.cumsum(apart)])
+    return ranks

@@ -53,15 +53,20 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     n_weights : int
         How many weighted sums to minimise at most, those first that belong to the widest gaps of the hull.
     meter : Meter
-        Once a budget is used up, no more of them are minimised; the two ends are found in any case.
+        Once a budget is used up, no more of them are minimised. The two ends are found in any case, unless the time does not
+        suffice for the searches that they take: then there is no point.
 
     References
     ----------
     Y. P. Aneja and K. P. K. Nair, "Bicriteria transportation problem", Management Science 25(1), 1979 (weights normal to the
     gap between two points).
     """
-    searches = [backward_costs(moves, *_pair(costs, order), goal, costs.with_heading) for order in ((0, 1), (1, 0))]
+    searches = [
+        backward_costs(moves, *_pair(costs, order), goal, costs.with_heading, stop=meter.stop) for order in ((0, 1), (1, 0))
+    ]
     bounds = np.stack([search[0] for search, _ in searches])
+    if meter.message:
+        return Hull(bounds, np.empty((0, 2), dtype=np.int64), [], *_no_weights(bounds))
     (left, first), (right, last) = (
         _follow(moves, costs, costs.take(order), search, start, goal)
         for order, search in zip(((0, 1), (1, 0)), searches, strict=True)
@@ -69,19 +74,21 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     del searches
     n_weights = _affordable(n_weights, bounds, meter)
     weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
-    spent = _spent(moves, costs, start)
+    spent = _spent(moves, costs, start, meter)
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
     found, used = {left: first, right: last}, []
     # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
     gaps, narrow = [(0.0, left, right, 0)] if left != right else [], []
     while gaps and len(used) < n_weights:
+        _, low, high, _ = gaps[0]
+        weights = _normal(low, high)
         meter.check()
-        if meter.message:
+        least = None if meter.message else _minimise(moves, costs, weights, start, goal, spent, (high[0], low[1]), meter)
+        if least is None:
             break
-        _, low, high, _ = heapq.heappop(gaps)
-        column = len(used)
-        used.append(_normal(low, high))
-        sums, point, path = _minimise(moves, costs, used[-1], start, goal, spent, (high[0], low[1]))
+        heapq.heappop(gaps)
+        (sums, point, path), column = least, len(used)
+        used.append(weights)
         weighted[:, column] = _rounded_down(sums)
         if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
             found[point] = path
@@ -90,11 +97,17 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
         else:
             narrow.append((low, column))
     narrow += [(low, column) for _, low, _, column in gaps]
-    if not used:
-        used, weighted = [(1.0, 1.0)], _rounded_down(bounds.sum(axis=0))[:, None]
     points = sorted(found)
-    column = np.array([column for _, column in sorted(narrow)] or [0])
-    return Hull(bounds, np.array(points), [found[point] for point in points], np.array(used)[column], weighted, column)
+    paths = [found[point] for point in points]
+    if not used:
+        return Hull(bounds, np.array(points), paths, *_no_weights(bounds))
+    column = np.array([column for _, column in sorted(narrow)])
+    return Hull(bounds, np.array(points), paths, np.array(used)[column], weighted, column)
+
+
+def _no_weights(bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return weights, weighted sums and their columns when none was minimised."""
+    return np.ones((1, 2)), _rounded_down(bounds.sum(axis=0))[:, None], np.zeros(1, dtype=np.int64)
 
 
 def _rounded_down(sums: np.ndarray) -> np.ndarray:
@@ -163,28 +176,30 @@ def _normal(low, high) -> tuple[float, float]:
     return first / larger, second / larger
 
 
-def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent: np.ndarray, corner):
+def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent: np.ndarray, corner, meter: Meter):
     """Return least weighted sums from every state, rounded down step by step, and the point and the cells of their path.
 
-    States from which no path below the corner goes on have no finite sum.
+    None if a budget is used up before. States from which no path below the corner goes on have no finite sum.
     """
     step = np.stack([_weighted(costs.step, weights), costs.step[0]])
     field = np.stack([_weighted(costs.field, weights), costs.field[0]])
     # One unit beyond the corner lies what labels stay below, see _corners of the label search; and one more for rounding.
     limit = int((weights[0] * (corner[0] + 1) + weights[1] * (corner[1] + 1)) * (1 + 1e-12)) + 2
-    found = backward_costs(moves, step, field, goal, costs.with_heading, _weighted(spent, weights), limit)
+    found = backward_costs(moves, step, field, goal, costs.with_heading, _weighted(spent, weights), limit, meter.stop)
+    if meter.message:
+        return None
     point, path = _follow(moves, costs, costs._replace(step=step, field=field), found, start, goal)
     return found[0][0], point, path
 
 
-def _spent(moves: Moves, costs: Costs, start: int) -> np.ndarray:
+def _spent(moves: Moves, costs: Costs, start: int, meter: Meter) -> np.ndarray:
     """Return lower bounds of both costs from the start to each cell, int64, shape (2, n_cells)."""
     least = np.broadcast_to(costs.step.min(axis=1, keepdims=True), costs.step.shape)
     back = moves.backward()
     spent = np.empty_like(costs.field)
     for k in range(2):
         # The search enters the start instead of the cell that it set out from.
-        ahead = backward_costs(back, np.stack([least[k]] * 2), np.stack([costs.field[k]] * 2), start)[0][0]
+        ahead = backward_costs(back, np.stack([least[k]] * 2), np.stack([costs.field[k]] * 2), start, stop=meter.stop)[0][0]
         spent[k] = np.minimum(ahead + costs.field[k] - costs.field[k, start], UNREACHABLE)
         spent[k, start] = 0
     return spent

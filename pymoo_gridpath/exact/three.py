@@ -33,8 +33,7 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
         Of three objectives. If one depends on headings it must be the third.
     start, goal : int
     meter : Meter
-        Ends the search when a budget is used up; the part of the front with the least first costs is returned then. Asked first
-        when the lower bounds are known.
+        Ends the search when a budget is used up; the part of the front with the least first costs is returned then.
 
     References
     ----------
@@ -42,19 +41,20 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     lazy and efficient dominance checks", IJCAI 2023 (LTMOA*). F.-J. Pulido, L. Mandow and J.-L. Perez-de-la-Cruz,
     "Dimensionality reduction in multiobjective shortest path search", Computers & Operations Research 64, 2015.
     """
-    search = _Search(moves, costs, start, goal)
+    search = _Search(moves, costs, start, goal, meter)
     meter.n_fixed = search.n_fixed
-    search.run(meter)
+    if not meter.message:
+        search.run(meter)
     return Front(search.paths(), search.points())
 
 
 class _Search:
     """The arrays of one search, which grow between calls of the kernel."""
 
-    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int):
+    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, meter: Meter):
         self.moves, self.costs, self.start, self.goal = moves, costs, start, goal
         self.n_headings = 8 if costs.with_heading else 1
-        self.bounds = np.stack([self._bound(k) for k in range(3)], axis=1)
+        self.bounds = np.stack([self._bound(k, meter) for k in range(3)], axis=1)
         # The last list is that of the paths found.
         self.lists = np.full(len(self.bounds) + 1, -1, dtype=np.int32)
         self.nodes = np.empty((4096, 3), dtype=np.int64)
@@ -65,11 +65,11 @@ class _Search:
         self.counts[FREE_NODE] = -1
         self._open_first_steps()
 
-    def _bound(self, k: int) -> np.ndarray:
+    def _bound(self, k: int, meter: Meter) -> np.ndarray:
         """Return the least cost in one objective from every state."""
         pair = self.costs.take((k, k))
         with_heading = self.costs.with_heading and k == 2
-        bound = backward_costs(self.moves, pair.step, pair.field, self.goal, with_heading)[0][0]
+        bound = backward_costs(self.moves, pair.step, pair.field, self.goal, with_heading, stop=meter.stop)[0][0]
         return bound if with_heading else np.repeat(bound, self.n_headings)
 
     def _open_first_steps(self) -> None:

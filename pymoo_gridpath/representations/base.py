@@ -176,8 +176,16 @@ class MonotoneRepresentation(Representation):
         self.grid, self.start, self.goal = grid, self.frame.start, self.frame.goal
 
     def prepare(self, field: np.ndarray) -> np.ndarray:
-        """Return a field over the grid as prefix sums up each column of the frame."""
-        return self.frame.prefix_sums(field)
+        """Return a field over the grid as prefix sums up each column of the frame.
+
+        If these cannot be exact, as those of dear cells beside cheap ones, it is returned by the index of the cell, in float,
+        shape (height * width,).
+        """
+        sums = self.frame.prefix_sums(field)
+        with np.errstate(invalid="ignore"):
+            if np.array_equal(np.diff(sums, axis=1), self.frame.columns(field)):
+                return sums
+        return np.asarray(field, dtype=float).ravel()
 
     @functools.cached_property
     def moves(self) -> Moves:

@@ -22,6 +22,15 @@ def turn_units() -> np.ndarray:
     return np.concatenate([np.minimum(apart, 8 - apart), np.zeros((1, 8), dtype=int)])
 
 
+def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Return the legal steps that lead back along others; see `Moves` for both arrays."""
+    back = np.zeros_like(legal)
+    for m in range(8):
+        leads = np.flatnonzero(legal >> np.uint8(m) & 1)
+        back[leads + offsets[m]] |= np.uint8(1 << (m + 4) % 8)
+    return back
+
+
 class Moves:
     """The legal steps from each cell of a grid.
 
@@ -62,11 +71,18 @@ class Moves:
     def backward(self) -> Moves:
         """Return the steps that lead back: along the opposite heading wherever a step leads forth."""
         back = copy.copy(self)
-        back.legal = np.zeros_like(self.legal)
-        for m in range(8):
-            leads = np.flatnonzero(self.legal >> np.uint8(m) & 1)
-            back.legal[leads + self.offsets[m]] |= np.uint8(1 << (m + 4) % 8)
+        back.legal = taken_backwards(self.legal, self.offsets)
         return back
+
+    def within(self, usable: np.ndarray) -> Moves:
+        """Return the steps that lead from and to usable cells, bool, shape (n_cells,)."""
+        kept = copy.copy(self)
+        kept.legal = np.zeros_like(self.legal)
+        for m in range(8):
+            leads = np.flatnonzero((self.legal >> np.uint8(m) & 1).astype(bool) & usable)
+            leads = leads[usable[leads + self.offsets[m]]]
+            kept.legal[leads] |= np.uint8(1 << m)
+        return kept
 
     @property
     def n_cells(self) -> int:

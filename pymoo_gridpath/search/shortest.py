@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
@@ -10,6 +12,9 @@ from pymoo_gridpath.search.moves import Moves
 
 #: The cost where no path leads; sums of two such numbers do not overflow.
 UNREACHABLE = 2**61
+
+# Cells that are expanded before it is asked whether to stop: milliseconds when compiled.
+_POPS_AT_A_TIME = 2**13
 
 
 def backward_costs(
@@ -20,6 +25,7 @@ def backward_costs(
     with_heading: bool = False,
     spent: np.ndarray | None = None,
     limit: int = UNREACHABLE,
+    stop: Callable[[], bool] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the costs of the lexicographically cheapest path to a goal from every cell, or from every cell and heading.
 
@@ -40,6 +46,8 @@ def backward_costs(
         Least first cost of a path from somewhere to each cell, 0 by default.
     limit : int, optional
         Cells are left out, as if no path led on, where the least first cost of what is spent and what lies ahead reaches it.
+    stop : callable, optional
+        Asked many times a second; if it returns True the search ends, and what it has found so far holds for nothing.
 
     Returns
     -------
@@ -52,23 +60,27 @@ def backward_costs(
     cost = np.full((2, moves.n_cells * (8 if with_heading else 1)), UNREACHABLE)
     ahead = np.full(cost.shape[1], -1, dtype=np.int8)
     heap = np.empty((1024, 3), dtype=np.int64)
+    n = 0
+    for state in range(8 * goal, 8 * goal + 8) if with_heading else (goal,):
+        cost[:, state] = 0
+        push(heap, n, 0, 0, state)
+        n += 1
     if spent is None:
         spent = np.zeros(moves.n_cells, dtype=np.int64)
-    _backward(moves.legal, moves.offsets, step, field, goal, with_heading, spent, limit, cost, ahead, heap)
+    while n > 0:
+        arrays = step, field, with_heading, spent, limit, cost, ahead
+        heap, n = _expand(moves.legal, moves.offsets, *arrays, heap, n, _POPS_AT_A_TIME)
+        if n > 0 and stop is not None and stop():
+            break
     return cost, ahead
 
 
 @kernel
-def _backward(legal, offsets, step, field, goal, with_heading, spent, limit, cost, ahead, heap):
+def _expand(legal, offsets, step, field, with_heading, spent, limit, cost, ahead, heap, n, max_pops):
+    """Expand at most so many of the ``n`` states in a heap, cheapest first; return the heap and how many it then holds."""
     n_cells = len(legal)
-    n = 0
-    for h in range(8 if with_heading else 1):
-        state = 8 * goal + h if with_heading else goal
-        cost[0, state] = 0
-        cost[1, state] = 0
-        push(heap, n, 0, 0, state)
-        n += 1
-    while n > 0:
+    pops = 0
+    while n > 0 and pops < max_pops:
         first = heap[0, 0]
         second = heap[0, 1]
         state = heap[0, 2]
@@ -76,6 +88,7 @@ def _backward(legal, offsets, step, field, goal, with_heading, spent, limit, cos
         n -= 1
         if first > cost[0, state] or second > cost[1, state]:
             continue
+        pops += 1
         if n + 64 > len(heap):
             heap = grown(heap)
         cell = state >> 3 if with_heading else state
@@ -99,6 +112,7 @@ def _backward(legal, offsets, step, field, goal, with_heading, spent, limit, cos
                     ahead[origin] = m
                     push(heap, n, total1, total2, origin)
                     n += 1
+    return heap, n
 
 
 @kernel

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import weakref
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -10,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.grid import SQRT2
-from pymoo_gridpath.search.moves import DIAGONAL, Moves
+from pymoo_gridpath.search.moves import DIAGONAL, Moves, taken_backwards
 from pymoo_gridpath.search.shortest import UNREACHABLE, backward_costs
 
 #: Weights of terms are whole numbers from 0 to this, 1 or more for the length.
@@ -102,8 +101,7 @@ def make_terrain(moves: Moves, start: int, goal: int, fields: Sequence[np.ndarra
     -------
     Terrain
     """
-    back = copy.copy(moves)
-    back.legal = _reversed(moves.legal, moves.offsets)
+    back = moves.backward()
     visited = steps_through(moves, start, goal) < UNREACHABLE if len(fields) else np.empty(0)
     straight, fields_ = _scaled(moves, start, goal, [_raised(np.ravel(field), visited) for field in fields])
     diagonal = round(SQRT2 * straight)
@@ -117,7 +115,7 @@ def make_terrain(moves: Moves, start: int, goal: int, fields: Sequence[np.ndarra
     bounds[~useful] = UNREACHABLE
     stacked = np.stack(fields_, axis=1) if fields_ else np.zeros((moves.n_cells, 0), dtype=np.int64)
     return Terrain(
-        _restricted(moves, useful), moves.offsets, moves.width, int(start), int(goal), straight, diagonal, stacked, bounds
+        moves.within(useful).legal, moves.offsets, moves.width, int(start), int(goal), straight, diagonal, stacked, bounds
     )
 
 
@@ -200,33 +198,13 @@ def _is_diagonal(cells: np.ndarray, width: int) -> np.ndarray:
     return (np.diff(cells % width) != 0) & (np.diff(cells // width) != 0)
 
 
-def _reversed(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Return the legal steps taken backwards."""
-    backwards = np.zeros_like(legal)
-    for m in range(8):
-        tails = np.flatnonzero((legal >> m) & 1)
-        backwards[tails + offsets[m]] |= np.uint8(1 << ((m + 4) % 8))
-    return backwards
-
-
-def _restricted(moves: Moves, useful: np.ndarray) -> np.ndarray:
-    """Return the legal steps from and to useful cells."""
-    legal = np.zeros_like(moves.legal)
-    for m in range(8):
-        tails = np.flatnonzero(((moves.legal >> m) & 1).astype(bool) & useful)
-        tails = tails[useful[tails + moves.offsets[m]]]
-        legal[tails] |= np.uint8(1 << m)
-    return legal
-
-
 def steps_through(moves: Moves, start: int, goal: int) -> np.ndarray:
     """Return the fewest steps of a path from the start through each cell to the goal; `UNREACHABLE` or more for none."""
-    back = copy.copy(moves)
-    back.legal = _reversed(moves.legal, moves.offsets)
+    back = moves.backward()
     step, nothing = np.ones((9, 8), dtype=np.int64), np.zeros(moves.n_cells, dtype=np.int64)
     return _least_costs(moves, step, nothing, goal) + _least_costs(back, step, nothing, start)
 
 
 def backwards(terrain: Terrain) -> Terrain:
     """Return the terrain with every step taken backwards, for floods from the goal; its bounds do not hold."""
-    return terrain._replace(legal=_reversed(terrain.legal, terrain.offsets), start=terrain.goal, goal=terrain.start)
+    return terrain._replace(legal=taken_backwards(terrain.legal, terrain.offsets), start=terrain.goal, goal=terrain.start)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -177,6 +178,51 @@ def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
     # The test would say little if all fronts were single points.
     assert max(sizes) >= 4
     assert np.mean(np.array(sizes) > 1) > 0.2
+
+
+def magnitudes(random_state, shape):
+    """Return costs of many sizes: a few dear cells, or all between tiny and huge, or two kinds, or with cells for nothing."""
+    values = random_state.random(shape)
+    kind = random_state.integers(4)
+    if kind == 0:
+        return values + np.where(random_state.random(shape) < 0.3, 1e20, 0.0)
+    if kind == 1:
+        return values * 10.0 ** random_state.integers(-40, 41, size=shape)
+    if kind == 2:
+        return np.where(random_state.random(shape) < 0.5, 1e-9, 1e9) * (1 + values)
+    return np.where(random_state.random(shape) < 0.4, 0.0, 10.0 ** random_state.integers(0, 300, size=shape))
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_costs_of_any_size_have_every_point_of_the_enumeration(solvable_seeds, part):
+    """In exact arithmetic, since doubles cannot tell most of these sums apart."""
+    n_points = n_spread = 0
+    for seed in solvable_seeds[part:240:4]:
+        case = random_case(seed)
+        random_state = np.random.default_rng(seed)
+        wide, other = (Cost(name, magnitudes(random_state, case[0].shape)) for name in ("wide", "other"))
+        problem = make_problem(case, ("length",))
+        paths = enumerate_paths(problem.grid, problem.start, problem.goal, headings_of(problem))
+        exact = {cost.name: [[Fraction(value) for value in row] for row in cost.values] for cost in (wide, other)}
+        measures = scores(paths, {}) | {
+            name: [sum(field[y][x] for x, y in cells) for cells, *_ in paths] for name, field in exact.items()
+        }
+        for objectives in (("length", wide), (wide, "turn"), (wide, other), ("length", other, "turn"), (wide, "length", other)):
+            problem = make_problem(case, objectives)
+            found = exact_front(problem)
+            assert found.complete
+            table = np.array(list(zip(*(measures[name] for name in problem.objective_names), strict=True)), dtype=float)
+            # What is found is what some path scores, and no other path is better, ...
+            same = np.isclose(found.F[:, None], table[None], rtol=1e-12, atol=0).all(axis=2)
+            assert same.any(axis=1).all()
+            points = table[same.argmax(axis=1)]
+            better = (table[:, None] <= points).all(axis=2) & (table[:, None] < points * (1 - 1e-11)).any(axis=2)
+            assert not better.any(), (seed, problem.objective_names)
+            # ... and nothing that none beats by more than rounding is left out.
+            assert (table[:, None] * (1 + 1e-9) >= found.F).all(axis=2).any(axis=1).all(), (seed, problem.objective_names)
+            n_points += len(found.F)
+            n_spread += (found.F.max(axis=0) / 1e12 > found.F.min(axis=0)).any()
+    assert n_points > 300 and n_spread > 20
 
 
 def label_correction(grid, start, goal, headings, field):

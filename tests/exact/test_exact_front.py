@@ -181,6 +181,18 @@ def test_a_budget_ends_the_search_with_the_part_found(objectives, budget):
         assert all((front <= f).all(axis=1).any() for f in found.F)
 
 
+@pytest.mark.parametrize("objectives", [("length",), TWO, THREE], ids=str)
+def test_a_budget_of_time_ends_a_search_for_bounds(objectives):
+    """On a map whose single-objective searches alone take longer: what is left of them asks no more."""
+    problem = GridPathProblem(random_grid(150, 5), (0, 0), (149, 149), objectives=objectives, representation="cells")
+    asked = []
+    found = exact_front(problem, Budget(watch=lambda meter: not asked.append(meter)))
+    assert len(asked) <= 3 and found.message == "ended early, stopped by who watched it; 0 paths found"
+    result = minimize(problem, ExactFront(max_seconds=0.0))
+    assert (result.X, result.success) == (None, False)
+    assert result.message == "ended early, the time budget of 0 s is used up; 0 paths found"
+
+
 def test_what_watches_ends_the_search_and_is_not_in_the_result():
     problem = GridPathProblem(random_grid(60, 2), (0, 0), (59, 59), "cells")
     seen = []
@@ -258,11 +270,23 @@ def test_decimal_costs_make_no_twins():
     np.testing.assert_array_equal(problem.pareto_front(), [[6.0, 0.3]])
 
 
-def test_costs_too_far_apart_are_refused():
-    field = np.ones((5, 5))
-    field[2, 2] = 1e20
+def test_costs_far_apart_keep_the_cheap_part_of_the_front():
+    """Cells too dear to be wanted leave the front of the others as it is where they are occupied."""
+    toll, occupied = np.random.default_rng(1).random((20, 20)), random_grid(20, 4).occupied
+    dear, walled = (
+        GridPathProblem(OccupancyGrid(cells, corner_cutting=True), (0, 0), (19, 19), "cells", ["length", Cost("toll", field)])
+        for cells, field in ((np.zeros((20, 20)), np.where(occupied, 1e20, toll)), (occupied, toll))
+    )
+    front = dear.pareto_front()
+    cheap = front[:, 1] < 1e19
+    np.testing.assert_allclose(front[cheap], walled.pareto_front(), rtol=1e-12)
+    assert not cheap.all() and cheap.sum() > 3
+
+
+def test_costs_whose_sum_is_no_number_are_refused():
+    field = np.full((5, 5), 1e308)
     problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "cells", ["length", Cost("wall", field)])
-    with pytest.raises(CapabilityError, match="from 1 to 1e\\+20, too far apart"):
+    with pytest.raises(CapabilityError, match="values up to 1e\\+308, whose sum over the free cells is more"):
         exact_front(problem)
 
 
