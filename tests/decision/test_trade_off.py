@@ -1,67 +1,23 @@
-"""From Results to a trade-off set, its members and its files."""
+"""From Results to a trade-off set: what is kept, and what becomes of runs without a legal path."""
 
-import copy
-import csv
 import itertools
-import json
 import math
 import pickle
-import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import reference
-from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.core.population import Population
 from pymoo.core.result import Result
-from pymoo.optimize import minimize
+from trade_offs import draw, make_problem, result_of, run
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
-from pymoo_gridpath.decision import NAMES, TradeOffSet, export, knee_point, load_json
+from pymoo_gridpath.decision import TradeOffSet, load_json
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Objective, Vulnerability
-from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament, paper_operators
-from pymoo_gridpath.problems import random_dense_grid
 from pymoo_gridpath.representations import CellSequence
 
 MEASURES = ["length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance"]
-
-
-def make_problem(size=8, seed=5, corner_cutting=True, **options):
-    grid = random_dense_grid(size, 0.25, seed).replace(corner_cutting=corner_cutting)
-    return GridPathProblem(grid, (0, 0), (size - 1, size - 1), **options)
-
-
-def draw(problem, n=3000, seed=0):
-    return np.random.default_rng(seed).integers(problem.xl, problem.xu + 1, (n, problem.n_var))
-
-
-def run(problem, seed=1, generations=25, **options):
-    algorithm = NSGA2(60, selection=SmoothnessTournament(), survival=RankAndSmoothness(), **paper_operators(problem))
-    return minimize(problem, algorithm, ("n_gen", generations), seed=seed, **options)
-
-
-def result_of(problem, X, opt=True):
-    """A Result as a pymoo run leaves it, of given genes."""
-    result = Result()
-    result.problem = problem
-    result.pop = Population.new(X=np.asarray(X))
-    result.opt = result.pop if opt else None
-    return result
-
-
-@pytest.fixture(scope="module")
-def results():
-    problem = make_problem(12, 3)
-    return [run(problem, seed) for seed in (1, 2, 3)]
-
-
-@pytest.fixture(scope="module")
-def trade_off(results):
-    return TradeOffSet.from_results(results)
-
 
 # -- what is kept -----------------------------------------------------------------------------------------------------
 
@@ -302,207 +258,3 @@ def _empty(problem):
     result = Result()
     result.problem = problem
     return result
-
-
-# -- members ----------------------------------------------------------------------------------------------------------
-
-
-def test_named_members_have_the_least_of_their_measure(trade_off):
-    assert trade_off.shortest.length == trade_off.measures["length"].min()
-    assert trade_off.safest.vulnerability == trade_off.measures["vulnerability"].min()
-    assert trade_off.smoothest.turn == trade_off.measures["turn"].min()
-    for name in NAMES:
-        assert name in trade_off[name].names
-        assert trade_off[name].index == trade_off.index(name)
-        assert np.array_equal(getattr(trade_off, name).cells, trade_off[name].cells)
-    with pytest.raises(GridPathError, match="fastest"):
-        trade_off["fastest"]
-
-
-def test_a_tie_goes_to_the_path_better_in_the_first_objective():
-    problem = make_problem(16, 2, objectives=("length", "vulnerability"))
-    trade_off = TradeOffSet.from_results([run(problem, seed, 40) for seed in (1, 2)])
-    smoothest = [record for record in trade_off if record.turn == trade_off.smoothest.turn]
-    assert trade_off.smoothest.length == min(record.length for record in smoothest)
-
-
-def test_indices_behave_like_those_of_a_list(trade_off):
-    assert trade_off[-1].index == len(trade_off) - 1
-    assert [record.index for record in trade_off] == list(range(len(trade_off)))
-    with pytest.raises(IndexError):
-        trade_off[len(trade_off)]
-    with pytest.raises(AttributeError):
-        trade_off[0].length = 3.0  # pyright: ignore[reportAttributeAccessIssue]
-
-
-def knee_by_definition(F):
-    """Signed distance from the line through the extreme points of a front of two, after scaling."""
-    F = np.asarray(F, dtype=float)
-    scaled = (F - F.min(axis=0)) / (F.max(axis=0) - F.min(axis=0))
-    (ax, ay), (bx, by) = scaled[np.argmin(scaled[:, 0])], scaled[np.argmin(scaled[:, 1])]
-    away = [((bx - ax) * (ay - y) - (ax - x) * (by - ay)) / np.hypot(bx - ax, by - ay) for x, y in scaled]
-    return int(np.argmax(away))
-
-
-def test_the_knee_of_two_objectives_is_furthest_from_the_line_of_extremes():
-    rng = np.random.default_rng(0)
-    for _ in range(50):
-        x = np.sort(rng.random(12))
-        F = np.column_stack([100 * x, 3 * np.sort(rng.random(12))[::-1]])
-        assert knee_point(F) == knee_by_definition(F)
-
-
-@pytest.mark.parametrize(
-    ("F", "expected"),
-    [
-        ([[3, 7]], 0),
-        ([[1, 9], [2, 3]], 0),
-        ([[0, 4], [3, 3], [4, 0]], 0),  # bulges away: the first extreme
-        ([[0, 4], [1, 2], [2, 1], [4, 0]], 1),  # a tie
-        ([[0, 10, 5], [10, 0, 5], [1, 1, 5]], 2),  # one objective does not vary
-        ([[0, 1, 1], [1, 0, 1], [1, 1, 0], [0.4, 0.4, 0.4], [0.5, 0.5, 0.5]], 3),
-        ([[0, 1, 1], [1, 0, 1], [1, 1, 0], [0.1, 0.2, 0.3], [0.3, 0.2, 0.1]], 3),  # a tie but for rounding
-        ([[5], [5]], 0),
-    ],
-)
-def test_knees_made_by_hand(F, expected):
-    assert knee_point(np.array(F)) == expected
-
-
-def test_a_set_of_one_goes_by_all_names():
-    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5)), corner_cutting=True), (0, 0), (4, 4))
-    trade_off = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]])
-    assert trade_off[0].names == NAMES
-    assert trade_off[0].clearance == np.inf
-
-
-# -- provenance and files ---------------------------------------------------------------------------------------------
-
-
-def test_the_record_says_what_made_it(results):
-    trade_off = TradeOffSet.from_results(results[0], settings={"command": "plan"})
-    grid, meta = trade_off.problem.grid, trade_off.meta
-    assert meta["map"]["occupied_cells"] == grid.n_occupied
-    assert meta["query"] == {"start": [0, 0], "goal": [11, 11]}
-    assert meta["seed"] == 1
-    settings = meta["settings"]
-    assert settings["representation"] == "integer" and settings["command"] == "plan"
-    assert settings["objectives"][1] == {"name": "vulnerability", "variance": 0.5}
-    entry = settings["runs"][0]
-    assert (entry["algorithm"], entry["pop_size"], entry["generations"], entry["evaluations"]) == ("NSGA2", 60, 25, 1500)
-    assert entry["operators"]["crossover"]["name"] == "DiscreteSBX"
-    assert set(meta["versions"]) == {"python", "pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore", "numba"}
-
-
-def test_the_digest_tells_maps_apart():
-    grid = make_problem().grid
-    occupied = grid.occupied.copy()
-    occupied[3, 3] ^= True
-    digests = {TradeOffSet.from_genes(p, draw(p, 300)).meta["map"]["sha256"] for p in _problems(grid, occupied)}
-    assert len(digests) == 2
-
-
-def _problems(grid, occupied):
-    return [GridPathProblem(g, (0, 0), (7, 7)) for g in (grid, grid.replace(name="other"), grid.replace(occupied=occupied))]
-
-
-def strict(text):
-    def refuse(word):
-        raise AssertionError(f"{word} is not JSON")
-
-    return json.loads(text, parse_constant=refuse)
-
-
-def test_json_holds_every_path_and_what_made_it(trade_off, tmp_path):
-    content = strict(trade_off.to_json(tmp_path / "front.json").read_text())
-    assert {"map", "query", "settings", "seed", "versions", "feasible", "objectives", "paths"} <= set(content)
-    assert len(content["paths"]) == len(trade_off)
-    for record, stored in zip(trade_off, content["paths"], strict=True):
-        assert stored["cells"] == record.cells.tolist()
-        assert stored["points"] == record.points.tolist()
-        assert stored["names"] == list(record.names)
-        for name in MEASURES:
-            assert stored[name] == getattr(record, name)
-    assert load_json(tmp_path / "front.json") == content
-
-
-def test_json_has_null_where_a_number_is_not_finite(tmp_path):
-    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4))
-    path = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]]).to_json(tmp_path / "front.json")
-    assert strict(path.read_text())["paths"][0]["clearance"] is None
-
-
-def test_a_set_is_rebuilt_from_the_genes_of_its_json(trade_off, tmp_path):
-    content = load_json(trade_off.to_json(tmp_path / "front.json"))
-    again = TradeOffSet.from_genes(trade_off.problem, [record["genes"] for record in content["paths"]])
-    assert np.array_equal(again.F, trade_off.F)
-
-
-@pytest.mark.parametrize(
-    ("text", "word"),
-    [
-        ("{", "not JSON"),
-        ("[]", "no trade-off set"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 99}', "format_version"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": []}', "paths"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": [{"cells": []}]}', "points"),
-    ],
-)
-def test_a_file_that_is_no_set_is_refused(text, word, tmp_path):
-    path = tmp_path / "bad.json"
-    path.write_text(text)
-    with pytest.raises(GridPathError, match=word):
-        load_json(path)
-    with pytest.raises(GridPathError, match="cannot be read"):
-        load_json(tmp_path / "none.json")
-
-
-def test_csv_gives_every_measure_back(trade_off, tmp_path):
-    with open(trade_off.to_csv(tmp_path / "front.csv"), newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert list(rows[0]) == ["path", "names", *MEASURES]
-    for name, values in trade_off.measures.items():
-        assert [float(row[name]) for row in rows] == values.tolist()
-    assert [tuple(filter(None, row["names"].split(";"))) for row in rows] == [record.names for record in trade_off]
-
-
-def test_a_crash_leaves_the_old_file_and_no_other(trade_off, tmp_path, monkeypatch):
-    path = tmp_path / "front.json"
-    path.write_text("old")
-
-    def crash(*args):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(export.os, "replace", crash)
-    with pytest.raises(KeyboardInterrupt):
-        trade_off.to_json(path)
-    assert path.read_text() == "old"
-    assert [file.name for file in tmp_path.iterdir()] == ["front.json"]
-
-
-def test_a_place_that_cannot_be_written_is_an_error_in_words(trade_off, tmp_path):
-    with pytest.raises(GridPathError, match="cannot be written"):
-        trade_off.to_csv(tmp_path / "no" / "folder.csv")
-    with pytest.raises(GridPathError, match="cannot be written"):
-        trade_off.to_json(tmp_path)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_the_table_lines_up_and_shows_the_named_paths(trade_off):
-    lines = trade_off.table().splitlines()
-    assert len(lines) == 2 + len(trade_off) and str(trade_off) == trade_off.table()
-    ends = [[match.end() for match in re.finditer(r"\S+(?: \S+)*", line)][:7] for line in lines[1:]]
-    assert all(row == ends[0] for row in ends[1:])
-    short = trade_off.table(max_rows=0)
-    assert all(name in short for name in NAMES)
-    assert len(trade_off) == 1 or "more" in short or len(set(trade_off.named.values())) == len(trade_off)
-
-
-def test_sets_can_be_pickled_and_copied(trade_off):
-    for again in (pickle.loads(pickle.dumps(trade_off)), copy.deepcopy(trade_off)):
-        assert again.table() == trade_off.table()
-
-
-def test_deciding_does_not_import_pyplot():
-    code = "import sys, pymoo_gridpath.decision, pymoo_gridpath.convergence; sys.exit('matplotlib.pyplot' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code]).returncode == 0

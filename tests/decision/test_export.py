@@ -1,0 +1,148 @@
+"""What a trade-off set records, and its files."""
+
+import copy
+import csv
+import json
+import pickle
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from trade_offs import draw, make_problem
+
+from pymoo_gridpath import GridPathProblem, OccupancyGrid
+from pymoo_gridpath.decision import NAMES, TradeOffSet, export, load_json
+from pymoo_gridpath.errors import GridPathError
+
+MEASURES = ["length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance"]
+
+
+def test_the_record_says_what_made_it(results):
+    trade_off = TradeOffSet.from_results(results[0], settings={"command": "plan"})
+    grid, meta = trade_off.problem.grid, trade_off.meta
+    assert meta["map"]["occupied_cells"] == grid.n_occupied
+    assert meta["query"] == {"start": [0, 0], "goal": [11, 11]}
+    assert meta["seed"] == 1
+    settings = meta["settings"]
+    assert settings["representation"] == "integer" and settings["command"] == "plan"
+    assert settings["objectives"][1] == {"name": "vulnerability", "variance": 0.5}
+    entry = settings["runs"][0]
+    assert (entry["algorithm"], entry["pop_size"], entry["generations"], entry["evaluations"]) == ("NSGA2", 60, 25, 1500)
+    assert entry["operators"]["crossover"]["name"] == "DiscreteSBX"
+    assert set(meta["versions"]) == {"python", "pymoo_gridpath", "pymoo", "numpy", "scipy", "moocore", "numba"}
+
+
+def test_the_digest_tells_maps_apart():
+    grid = make_problem().grid
+    occupied = grid.occupied.copy()
+    occupied[3, 3] ^= True
+    digests = {TradeOffSet.from_genes(p, draw(p, 300)).meta["map"]["sha256"] for p in _problems(grid, occupied)}
+    assert len(digests) == 2
+
+
+def _problems(grid, occupied):
+    return [GridPathProblem(g, (0, 0), (7, 7)) for g in (grid, grid.replace(name="other"), grid.replace(occupied=occupied))]
+
+
+def strict(text):
+    def refuse(word):
+        raise AssertionError(f"{word} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_json_holds_every_path_and_what_made_it(trade_off, tmp_path):
+    content = strict(trade_off.to_json(tmp_path / "front.json").read_text())
+    assert {"map", "query", "settings", "seed", "versions", "feasible", "objectives", "paths"} <= set(content)
+    assert len(content["paths"]) == len(trade_off)
+    for record, stored in zip(trade_off, content["paths"], strict=True):
+        assert stored["cells"] == record.cells.tolist()
+        assert stored["points"] == record.points.tolist()
+        assert stored["names"] == list(record.names)
+        for name in MEASURES:
+            assert stored[name] == getattr(record, name)
+    assert load_json(tmp_path / "front.json") == content
+
+
+def test_json_has_null_where_a_number_is_not_finite(tmp_path):
+    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4))
+    path = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]]).to_json(tmp_path / "front.json")
+    assert strict(path.read_text())["paths"][0]["clearance"] is None
+
+
+def test_a_set_is_rebuilt_from_the_genes_of_its_json(trade_off, tmp_path):
+    content = load_json(trade_off.to_json(tmp_path / "front.json"))
+    again = TradeOffSet.from_genes(trade_off.problem, [record["genes"] for record in content["paths"]])
+    assert np.array_equal(again.F, trade_off.F)
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("{", "not JSON"),
+        ("[]", "no trade-off set"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 99}', "format_version"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": []}', "paths"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": [{"cells": []}]}', "points"),
+    ],
+)
+def test_a_file_that_is_no_set_is_refused(text, word, tmp_path):
+    path = tmp_path / "bad.json"
+    path.write_text(text)
+    with pytest.raises(GridPathError, match=word):
+        load_json(path)
+    with pytest.raises(GridPathError, match="cannot be read"):
+        load_json(tmp_path / "none.json")
+
+
+def test_csv_gives_every_measure_back(trade_off, tmp_path):
+    with open(trade_off.to_csv(tmp_path / "front.csv"), newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["path", "names", *MEASURES]
+    for name, values in trade_off.measures.items():
+        assert [float(row[name]) for row in rows] == values.tolist()
+    assert [tuple(filter(None, row["names"].split(";"))) for row in rows] == [record.names for record in trade_off]
+
+
+def test_a_crash_leaves_the_old_file_and_no_other(trade_off, tmp_path, monkeypatch):
+    path = tmp_path / "front.json"
+    path.write_text("old")
+
+    def crash(*args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(export.os, "replace", crash)
+    with pytest.raises(KeyboardInterrupt):
+        trade_off.to_json(path)
+    assert path.read_text() == "old"
+    assert [file.name for file in tmp_path.iterdir()] == ["front.json"]
+
+
+def test_a_place_that_cannot_be_written_is_an_error_in_words(trade_off, tmp_path):
+    with pytest.raises(GridPathError, match="cannot be written"):
+        trade_off.to_csv(tmp_path / "no" / "folder.csv")
+    with pytest.raises(GridPathError, match="cannot be written"):
+        trade_off.to_json(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_table_lines_up_and_shows_the_named_paths(trade_off):
+    lines = trade_off.table().splitlines()
+    assert len(lines) == 2 + len(trade_off) and str(trade_off) == trade_off.table()
+    ends = [[match.end() for match in re.finditer(r"\S+(?: \S+)*", line)][:7] for line in lines[1:]]
+    assert all(row == ends[0] for row in ends[1:])
+    short = trade_off.table(max_rows=0)
+    assert all(name in short for name in NAMES)
+    assert len(trade_off) == 1 or "more" in short or len(set(trade_off.named.values())) == len(trade_off)
+
+
+def test_sets_can_be_pickled_and_copied(trade_off):
+    for again in (pickle.loads(pickle.dumps(trade_off)), copy.deepcopy(trade_off)):
+        assert again.table() == trade_off.table()
+
+
+def test_deciding_does_not_import_pyplot():
+    code = "import sys, pymoo_gridpath.decision, pymoo_gridpath.convergence; sys.exit('matplotlib.pyplot' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
