@@ -19,7 +19,7 @@ from pymoo_gridpath.compiled import COMPILED, on_compiling
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
-from pymoo_gridpath.progress import Progress
+from pymoo_gridpath.progress import Progress, say_that_it_compiles
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.commands import add_study_commands
 
@@ -28,7 +28,6 @@ DEFAULT_MAP = "warehouse"
 # Rows of the printed table; the files hold all paths.
 MAX_ROWS = 40
 
-COMPILING = "compiling the search for this machine, about 20 s the first time"
 
 EXIT_OK, EXIT_NO_PATH, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
 
@@ -342,11 +341,6 @@ def _searches_in_kernels(problem, algorithm) -> bool:
     return isinstance(algorithm, ExactFront) or problem.representation.name == "cells"
 
 
-def _say_that_it_compiles() -> None:
-    """Say why nothing happens yet, on a line of its own that takes the place of a progress line."""
-    print(("\r\x1b[K" if sys.stderr.isatty() else "") + COMPILING, file=sys.stderr)
-
-
 def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
     """Return the Results of the runs, with progress shown, ended early if Ctrl-C asks for it."""
     from pymoo_gridpath.algorithms import ExactFront, minimize_runs
@@ -360,7 +354,7 @@ def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
         progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
         return stop.requested
 
-    say = on_compiling(_say_that_it_compiles) if _searches_in_kernels(problem, algorithm) else contextlib.nullcontext()
+    say = on_compiling(say_that_it_compiles) if _searches_in_kernels(problem, algorithm) else contextlib.nullcontext()
     with Progress(arguments.runs, arguments.generations) as progress, say:
         if isinstance(algorithm, ExactFront):
             algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)

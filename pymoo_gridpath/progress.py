@@ -1,4 +1,4 @@
-"""A progress line for the terminal."""
+"""What is said on the terminal while work goes on."""
 
 from __future__ import annotations
 
@@ -6,6 +6,14 @@ import sys
 import time
 
 import numpy as np
+
+#: What `say_that_it_compiles` says.
+COMPILING = "compiling the search for this machine, about 20 s the first time"
+
+
+def say_that_it_compiles() -> None:
+    """Say why nothing happens yet, on a line of its own that takes the place of a progress line."""
+    print(("\r\x1b[K" if sys.stderr.isatty() else "") + COMPILING, file=sys.stderr)
 
 
 class Progress:

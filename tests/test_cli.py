@@ -14,9 +14,9 @@ import time
 import pytest
 
 from pymoo_gridpath import cli
-from pymoo_gridpath.cli import COMPILING, main
+from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
-from pymoo_gridpath.progress import Progress
+from pymoo_gridpath.progress import COMPILING, Progress
 
 FAST = ["--pop-size", "30", "--generations", "10"]
 

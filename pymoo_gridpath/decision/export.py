@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import os
-import uuid
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -27,29 +26,6 @@ _HEADERS = {
     "clearance": "clearance",
 }
 _FIELDS = ("cells", "points", "length", "vulnerability", "turn", "interfering_cells", "names")
-
-
-def write_whole(path: str | os.PathLike[str], data: bytes) -> Path:
-    """Write a file under a temporary name beside it and rename it, so that a crash leaves the old file or the new one.
-
-    Raises
-    ------
-    GridPathError
-        If the file cannot be written.
-    """
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.part")
-    try:
-        with open(temporary, "xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except OSError as error:
-        raise GridPathError(f"{path}: the file cannot be written ({error.strerror}), expected a writable place") from None
-    finally:
-        temporary.unlink(missing_ok=True)
-    return path
 
 
 def csv_text(trade_off) -> str:

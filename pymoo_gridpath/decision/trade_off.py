@@ -17,6 +17,7 @@ from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures, require_path_problem
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import clearance
+from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.versions import versions
 
 #: What members of a trade-off set go by, in the order in which tables and figures show them.
@@ -305,7 +306,7 @@ class TradeOffSet:
 
         The file is written under a temporary name and renamed.
         """
-        return export.write_whole(path, export.csv_text(self).encode())
+        return write_whole(path, export.csv_text(self).encode())
 
     def to_json(self, path: str | os.PathLike[str]) -> Path:
         """Write all paths with their cells, points in metres and measures, and what made them, to one strict JSON file.
@@ -313,7 +314,7 @@ class TradeOffSet:
         Numbers that are not finite become null. The file is written under a temporary name and renamed; `load_json`
         reads it.
         """
-        return export.write_whole(path, export.json_text(self).encode())
+        return write_whole(path, export.json_text(self).encode())
 
 
 def _select(problem, measures: PathMeasures, X: np.ndarray) -> tuple[np.ndarray, bool]:

@@ -10,8 +10,8 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from pymoo_gridpath.decision.export import write_whole
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.plotting.convergence import as_recorders, plot_convergence
 from pymoo_gridpath.plotting.fronts import plot_front
 from pymoo_gridpath.plotting.maps import Units, figure_size, plot_paths

@@ -213,7 +213,7 @@ def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal:
     cost = sparse.csr_array((field[head].astype(float), head, graph.indptr), shape=graph.shape)
     least = csgraph.dijkstra(cost, indices=start)
     # The cheapest paths are those whose every step adds no more than it must; sums of potentials are exact, others nearly.
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         needed = least[tail] + field[head] <= least[head] * (1 + 1e-12)
     steps = sparse.csr_array((graph.data[needed], (tail[needed], head[needed])), shape=graph.shape)
     return float(csgraph.dijkstra(steps, indices=start)[goal])

@@ -6,6 +6,7 @@ from importlib import import_module
 _HOMES = {
     "AlgorithmSpec": "specification.algorithm",
     "History": "record",
+    "LocalProcesses": "executors",
     "Outcome": "runner",
     "ProblemSpec": "specification.problem",
     "QueryRange": "specification.problem",
@@ -15,7 +16,6 @@ _HOMES = {
     "Study": "specification.study",
     "dask_executor": "executors",
     "load_study": "specification.toml_file",
-    "local_processes": "executors",
     "run_study": "runner",
     "write_report": "report",
 }

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import zlib
 from collections import OrderedDict
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from pymoo.algorithms.moo.rvea import RVEA
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.termination import Termination
+from pymoo.termination.max_eval import MaximumFunctionCallTermination
+from pymoo.termination.max_gen import MaximumGenerationTermination
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
@@ -140,11 +144,30 @@ def _operators(specs: Mapping[str, Any], problem: GridPathProblem) -> dict[str, 
     return {slot: paper[slot] if spec == "paper" else make_operator(slot, spec) for slot, spec in specs.items()}
 
 
-def build_termination(budget: Mapping[str, int]) -> Termination:
-    """Return the termination of ``{"evaluations": n}`` or ``{"generations": n}``."""
-    from pymoo.termination.max_eval import MaximumFunctionCallTermination
-    from pymoo.termination.max_gen import MaximumGenerationTermination
+def build_termination(budget: Mapping[str, int], algorithm: Algorithm | None = None) -> Termination:
+    """Return the termination of ``{"evaluations": n}`` or ``{"generations": n}``.
 
-    if "evaluations" in budget:
-        return MaximumFunctionCallTermination(budget["evaluations"])
-    return MaximumGenerationTermination(budget["generations"])
+    Parameters
+    ----------
+    budget : mapping
+    algorithm : pymoo.core.algorithm.Algorithm, optional
+        What is to end so. RVEA has to know how many generations there will be, and of evaluations it would make a generation
+        too few of them.
+    """
+    if "generations" in budget:
+        return MaximumGenerationTermination(budget["generations"])
+    if isinstance(algorithm, RVEA):
+        return _EvaluationsOfGenerations(budget["evaluations"], algorithm)
+    return MaximumFunctionCallTermination(budget["evaluations"])
+
+
+class _EvaluationsOfGenerations(MaximumGenerationTermination):
+    """End a run after a number of evaluations, and say beforehand how many generations these are."""
+
+    def __init__(self, n_max_evals: int, algorithm: Any):
+        # pymoo's RVEA leaves out the first generation.
+        super().__init__(1 + math.ceil(max(n_max_evals - algorithm.pop_size, 0) / algorithm.n_offsprings))
+        self.n_max_evals = n_max_evals
+
+    def _update(self, algorithm: Any) -> float:
+        return algorithm.evaluator.n_eval / self.n_max_evals

@@ -8,9 +8,13 @@ import math
 import sys
 from pathlib import Path
 
+from pymoo_gridpath.compiled import on_compiling
+from pymoo_gridpath.progress import say_that_it_compiles
+from pymoo_gridpath.study.progress import duration
+
 EXIT_OK, EXIT_FAILED_RUNS, EXIT_INTERRUPTED = 0, 1, 130
 
-# Imports of the study stand in the functions, since other commands and --help do without.
+# Other imports of the study stand in the functions, since other commands and --help do without.
 
 
 def add_study_commands(commands) -> None:
@@ -83,6 +87,7 @@ def _init(arguments) -> int:
     return EXIT_OK
 
 
+@on_compiling(say_that_it_compiles)
 def _check(arguments) -> int:
     """Check a study file, and say how many runs it asks for, how many are stored, and about how long the others will take."""
     from pymoo_gridpath.study.estimate import estimate
@@ -109,9 +114,10 @@ def _check(arguments) -> int:
     return EXIT_OK
 
 
+@on_compiling(say_that_it_compiles)
 def _run(arguments) -> int:
     """Run what is not stored yet of a study; what was stored by an earlier run, even if it was killed, is kept."""
-    from pymoo_gridpath.study.executors import dask_executor, local_processes
+    from pymoo_gridpath.study.executors import LocalProcesses, dask_executor
     from pymoo_gridpath.study.runner import run_study
     from pymoo_gridpath.study.specification.toml_file import load_study
 
@@ -124,7 +130,7 @@ def _run(arguments) -> int:
         if arguments.dask is not None:
             executor = stack.enter_context(dask_executor(arguments.dask))
         elif arguments.jobs > 1:
-            executor = stack.enter_context(local_processes(arguments.jobs))
+            executor = stack.enter_context(LocalProcesses(arguments.jobs))
         text = None if study.source is None else study.source.text
         outcome = run_study(plan, folder, executor, retry_failed=arguments.retry_failed, study=text, tell=_tell)
     if outcome.interrupted:
@@ -169,7 +175,7 @@ def _number(n: int, noun: str) -> str:
 def _time(found, n_runs: int, jobs: int) -> str:
     """Return an estimate in words."""
     # No more processes work than there are runs.
-    text = f"{'at most ' if found.open_ended else ''}about {_duration(found.seconds / min(jobs, n_runs))}"
+    text = f"{'at most ' if found.open_ended else ''}about {duration(found.seconds / min(jobs, n_runs))}"
     if jobs > 1:
         text += f" with {jobs} processes"
     if found.n_measured < found.n_kinds:
@@ -177,10 +183,3 @@ def _time(found, n_runs: int, jobs: int) -> str:
     if found.open_ended:
         text += ", if searches for exact fronts take all of their time"
     return text
-
-
-def _duration(seconds: float) -> str:
-    for limit, unit, name in ((100, 1, "s"), (100 * 60, 60, "min"), (48 * 3600, 3600, "h")):
-        if seconds < limit:
-            return f"{max(1, math.ceil(seconds / unit))} {name}"
-    return f"{seconds / 86400:.1f} days"

@@ -96,7 +96,7 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
         return _measure_exact(task.algorithm, problem, max_seconds)
     assert task.budget is not None
     algorithm: Any = build_algorithm(task.algorithm, problem)
-    algorithm.setup(problem, termination=build_termination(task.budget), seed=task.seed)
+    algorithm.setup(problem, termination=build_termination(task.budget, algorithm), seed=task.seed)
     wanted = next(iter(task.budget.values()))
     records: list[tuple[float, int]] = []
     while algorithm.has_next() and (not records or records[-1][0] < max_seconds):

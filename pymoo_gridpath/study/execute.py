@@ -79,7 +79,7 @@ def _run(task: Task, started: str) -> RunRecord:
         _warm_up(task, problem)
     algorithm: Any = build_algorithm(task.algorithm, problem)
     recorder = Recorder(problem.objective_names)
-    termination = None if task.budget is None else build_termination(task.budget)
+    termination = None if task.budget is None else build_termination(task.budget, algorithm)
     result = _search(problem, algorithm, task.seed, termination, recorder)
     members = Members(algorithm)
     front = members.front()

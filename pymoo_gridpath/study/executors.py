@@ -196,11 +196,6 @@ class _Foreign(StudyExecutor):
             ) from error
 
 
-def local_processes(n_processes: int) -> LocalProcesses:
-    """Return an executor of so many processes on this computer, see `LocalProcesses`."""
-    return LocalProcesses(n_processes)
-
-
 def dask_executor(address: str, timeout: float = 30.0) -> StudyExecutor:
     """Return an executor on an existing Dask cluster, once its workers have been checked.
 

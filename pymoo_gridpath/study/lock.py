@@ -16,8 +16,13 @@ except ImportError:  # Windows
 
 
 @contextlib.contextmanager
-def locked(path: Path) -> Iterator[None]:
+def locked(path: Path) -> Iterator[bool]:
     """Hold the lock of a file, which is made if need be and stays.
+
+    Yields
+    ------
+    bool
+        Whether it is held: some network file systems know no locks (ENOLCK, ENOTSUP), and better to run than to refuse.
 
     Raises
     ------
@@ -27,13 +32,14 @@ def locked(path: Path) -> Iterator[None]:
     # Not inherited by worker processes, so that none of them keeps it when the coordinator is killed.
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
     try:
+        held = True
         try:
             _lock(descriptor)
         except OSError as error:
             if error.errno in (errno.EAGAIN, errno.EACCES, errno.EDEADLK):
                 raise BlockingIOError(error.errno, os.strerror(error.errno), str(path)) from None
-            # Some network file systems know no locks (ENOLCK, ENOTSUP): better to run than to refuse.
-        yield
+            held = False
+        yield held
     finally:
         os.close(descriptor)
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from pymoo_gridpath.study.specification.canonical import resolve
 
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
-SCHEMA = 1
+SCHEMA = 2
 
 
 class Task(NamedTuple):
@@ -54,6 +54,8 @@ class PlannedProblem:
         The packed cells of a map; None for random grids, and in a plan read from a file.
     reference : str or None
         The key of the run whose front it is measured against; None if no exact front can be had or is wanted.
+    source : str
+        Where its map comes from, in words; empty for random grids. Part of no key: the cells of the map are.
     """
 
     label: str
@@ -61,6 +63,7 @@ class PlannedProblem:
     spec: dict[str, Any]
     grid: bytes | None = None
     reference: str | None = None
+    source: str = ""
 
 
 @dataclass(frozen=True)

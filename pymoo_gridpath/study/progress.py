@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections import defaultdict
 from collections.abc import Hashable, Iterable, Mapping
@@ -63,9 +64,8 @@ def remaining_seconds(spent: Mapping[Hashable, list[float]], left: Mapping[Hasha
 
 
 def duration(seconds: float) -> str:
-    """Return a time in words: seconds, minutes or hours."""
-    if seconds < 100:
-        return f"{seconds:.0f} s"
-    if seconds < 6000:
-        return f"{seconds / 60:.0f} min"
-    return f"{seconds / 3600:.1f} h"
+    """Return a time in words: whole seconds, minutes or hours, no less than it is, or days."""
+    for limit, unit, name in ((100, 1, "s"), (100 * 60, 60, "min"), (48 * 3600, 3600, "h")):
+        if seconds < limit:
+            return f"{max(1, math.ceil(seconds / unit))} {name}"
+    return f"{seconds / 86400:.1f} days"

@@ -73,7 +73,7 @@ def run_study(
     folder : path-like
         Where the runs are stored, see `Store`; made if need be.
     executor : concurrent.futures.Executor, optional
-        What carries the runs out; this process by default. `local_processes` and `dask_executor` return two that outlive the
+        What carries the runs out; this process by default. `LocalProcesses` and `dask_executor` are two that outlive the
         loss of a worker; any other that can pickle a function by its name will do, such as loky's or mpi4py's. Threads of one
         process take turns, so that they are of little use, and measured times mean less. It is left open, except that an
         interruption or an error ends what it does.
@@ -109,7 +109,8 @@ def run_study(
             if tell is not None:
                 tell(sentence)
 
-    with store.lock():
+    with store.lock() as held:
+        say(_about_lock(store, held))
         runs = {run.key: run for run in plan.runs}
         say(_about_plan_before(store, plan))
         store.write_plan(plan, study)
@@ -280,6 +281,11 @@ def _error_of(future: Future) -> BaseException | None:
         return future.exception()
     except Exception as error:  # it was cancelled
         return error
+
+
+def _about_lock(store: Store, held: bool) -> Iterable[str]:
+    if not held:
+        yield f"the file system of {store.folder} knows no locks; see to it that no other run of a study uses the folder"
 
 
 def _about_plan_before(store: Store, plan: Plan) -> Iterable[str]:

@@ -6,7 +6,6 @@ import contextlib
 import errno
 import json
 import os
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -14,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.files import UNFINISHED, make_folder, replace_file
 from pymoo_gridpath.study.lock import locked
 from pymoo_gridpath.study.plan import Plan
 from pymoo_gridpath.study.record import DamagedRecordError, RunRecord, from_bytes, read_meta
 
-_TEMPORARY = re.compile(r"\.(.+)\.tmp")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -164,8 +163,13 @@ class Store:
             ) from None
 
     @contextlib.contextmanager
-    def lock(self) -> Iterator[None]:
+    def lock(self) -> Iterator[bool]:
         """Keep other coordinators off the folder while open, and remove what a killed one had not finished writing.
+
+        Yields
+        ------
+        bool
+            False if the file system knows no locks, so that others are not kept off.
 
         Raises
         ------
@@ -174,9 +178,9 @@ class Store:
         """
         with contextlib.ExitStack() as stack:
             try:
-                _make(self.folder)
-                stack.enter_context(locked(self.folder / "lock"))
-                self._remove_temporary()
+                make_folder(self.folder)
+                held = stack.enter_context(locked(self.folder / "lock"))
+                self._remove_unfinished()
             except BlockingIOError:
                 raise GridPathError(
                     f"{self.folder} is in use by another run of a study, expected one at a time; wait for it or choose another "
@@ -184,7 +188,7 @@ class Store:
                 ) from None
             except OSError as error:
                 raise GridPathError(f"{self.folder} cannot be written to: {error.strerror}") from None
-            yield
+            yield held
 
     # -- parts ------------------------------------------------------------------------------------------------------------
 
@@ -205,19 +209,9 @@ class Store:
             raise GridPathError(f"{path} cannot be read: {error.strerror}") from None
 
     def _write(self, path: Path, data: bytes) -> None:
-        temporary = path.with_name(f".{path.name}.tmp")
         try:
-            _make(path.parent)
-            try:
-                with open(temporary, "wb") as file:
-                    file.write(data)
-                    file.flush()
-                    os.fsync(file.fileno())
-                os.replace(temporary, path)
-            except OSError:
-                temporary.unlink(missing_ok=True)
-                raise
-            _sync_folder(path.parent)
+            make_folder(path.parent)
+            replace_file(path, data)
         except OSError as error:
             hint = "; what is stored is whole, and running again goes on from there" if error.errno in _FULL else ""
             raise GridPathError(f"{path} cannot be written: {error.strerror}{hint}") from None
@@ -225,7 +219,7 @@ class Store:
     def _set_aside(self, key: str) -> Path:
         """Move a damaged file out of the way and return where to."""
         folder = self.folder / "damaged"
-        _make(folder)
+        make_folder(folder)
         number, target = 1, folder / f"{key}.npz"
         while target.exists():
             number += 1
@@ -233,33 +227,10 @@ class Store:
         os.replace(self.path(key), target)
         return target
 
-    def _remove_temporary(self) -> None:
+    def _remove_unfinished(self) -> None:
         runs = self.folder / "runs"
         folders = [self.folder, *(part for part in (runs.iterdir() if runs.is_dir() else ()) if part.is_dir())]
         for folder in folders:
             for entry in os.scandir(folder):
-                if _TEMPORARY.fullmatch(entry.name):
+                if UNFINISHED.fullmatch(entry.name):
                     os.unlink(entry.path)
-
-
-def _make(folder: Path) -> None:
-    """Make a folder and those above it that are missing, each on the disk before anything stands in it."""
-    if folder.is_dir():
-        return
-    if folder.parent != folder:
-        _make(folder.parent)
-    folder.mkdir(exist_ok=True)
-    _sync_folder(folder.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, so that a power failure does not undo a renaming."""
-    if os.name == "nt":
-        return  # folders cannot be opened there
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        # Some file systems cannot; the file is in place all the same.
-        with contextlib.suppress(OSError):
-            os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

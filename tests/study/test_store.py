@@ -99,7 +99,7 @@ def test_an_error_under_the_lock_is_its_own(store):
 
 
 def test_leftovers_of_a_killed_coordinator_are_removed(store):
-    leftovers = [store.path(KEYS[0]).with_name(".x.npz.tmp"), store.folder / ".plan.json.tmp"]
+    leftovers = [store.path(KEYS[0]).with_name(".x.npz.0123abcd.part"), store.folder / ".plan.json.00000000.part"]
     for path in leftovers:
         path.write_bytes(b"half")
     with store.lock():

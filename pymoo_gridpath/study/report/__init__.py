@@ -6,8 +6,8 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from pymoo_gridpath.decision.export import write_whole
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.files import write_whole
 
 __all__ = ["write_report"]
 

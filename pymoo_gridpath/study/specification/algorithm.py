@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.study.specification import canonical, values
 from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
+from pymoo_gridpath.study.specification.parameters import accepted_parameters, parameters
 
 PRESETS = ("ahmed-deb-2013",)
 
@@ -69,7 +71,8 @@ class AlgorithmSpec:
             raise StudyError("the algorithm has no key algorithm and no preset, or both; expected one of them")
         set_given(self, "name", check=values.text)
         set_given(self, "preset", check=lambda value, where: values.choice(value, PRESETS, where))
-        set_given(self, "pop_size", "max_labels", check=lambda value, where: values.whole(value, where, 1))
+        set_given(self, "pop_size", check=lambda value, where: values.whole(value, where, 2, values.MAX_POP_SIZE))
+        set_given(self, "max_labels", check=lambda value, where: values.whole(value, where, 1))
         set_given(self, "smoothness", check=values.flag)
         set_given(self, "max_seconds", check=values.real)
         set_given(self, "obstacles", check=lambda value, where: values.choice(value, OBSTACLES, where))
@@ -80,7 +83,7 @@ class AlgorithmSpec:
         if self.algorithm not in (None, "exact"):
             set_fields(self, operators=canonical.operators(self.operators, ("operators",)))
             self._check_slots(str(self.algorithm))
-            set_fields(self, parameters=canonical.parameters(self.algorithm, self.parameters or {}, ("parameters",)))
+            set_fields(self, parameters=parameters(self.algorithm, self.parameters or {}, ("parameters",)))
 
     def _check_kind(self) -> None:
         owner = "exact" if self.algorithm == "exact" else "the preset" if self.preset else self.algorithm
@@ -92,7 +95,13 @@ class AlgorithmSpec:
                 raise StudyError(f"{owner} takes no {key}, only {' and '.join(known)}", (key,))
 
     def _check_slots(self, algorithm: str) -> None:
-        accepted = canonical.accepted_parameters(algorithm)
+        accepted = accepted_parameters(algorithm)
+        if not CAPABILITIES[algorithm].operators and self.operators["base"] != "default":
+            raise StudyError(
+                f"{algorithm} makes children by differential evolution, so that there is no set of operators for it; "
+                f"expected sampling or repair alone, such as {{ sampling = 'ScalarizedSampling' }}",
+                ("operators",),
+            )
         for slot in self.operators:
             if slot != "base" and slot not in accepted:
                 takes = ", ".join(known for known in canonical.SLOTS if known in accepted)

@@ -18,7 +18,7 @@ from pymoo.core.repair import Repair
 from pymoo.core.sampling import Sampling
 
 from pymoo_gridpath import operators as _operators
-from pymoo_gridpath.algorithms import CAPABILITIES, _arguments
+from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.factory import _class_of, find_capability
 from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
 from pymoo_gridpath.problems.grid_path import DEFAULT_PENALTY
@@ -53,28 +53,6 @@ _PATH: dict[str, str] = {
 _PAPER = {"sampling": "RandomSampling", "repair": "EdgeFixing", "eliminate_duplicates": "RowDuplicates"}
 _PAPER_CROSSOVERS = {"binary": "TwoPointCrossover", "mixed": "MixedCrossover"}
 
-# Arguments of pymoo's algorithms that are not for a study file to set.
-_ELSEWHERE = {
-    "seed": "the seeds of the study",
-    "termination": "the budget of the study",
-    "pop_size": "the key pop_size of the algorithm",
-    "smoothness": "the key smoothness of the algorithm",
-    **dict.fromkeys(SLOTS, "the key operators of the algorithm"),
-}
-_NO_EFFECT = ("return_least_infeasible", "save_history", "verbose", "save_ps")
-_OBJECTS = (
-    "selection",
-    "survival",
-    "output",
-    "display",
-    "callback",
-    "archive",
-    "evaluator",
-    "decomposition",
-    "automated_dm",
-    "ps",
-)
-
 
 # -- algorithms ---------------------------------------------------------------------------------------------------------
 
@@ -102,54 +80,6 @@ def algorithm_name(name: str, where: Where) -> str:
     except CapabilityError as error:
         raise StudyError(str(error), where) from None
     return row.name
-
-
-def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
-    """Return further arguments of an algorithm, without those at their default.
-
-    Raises
-    ------
-    StudyError
-        If it takes no such argument, a study cannot set it, or the value is of another type than the default.
-    """
-    accepted = accepted_parameters(algorithm)
-    free = [key for key in accepted if key not in (*_ELSEWHERE, *_NO_EFFECT, *_OBJECTS)]
-    found = {}
-    for key, value in values.table(given, where).items():
-        place = (*where, key)
-        if key in _ELSEWHERE:
-            raise StudyError(f"{key} is set by {_ELSEWHERE[key]}, not among its parameters", place)
-        if key in accepted and key in (*_NO_EFFECT, *_OBJECTS):
-            why = "is an object of Python, which" if key in _OBJECTS else "changes no result, so that"
-            raise StudyError(f"{key} {why} a study does not set; {algorithm} takes {', '.join(free) or 'nothing else'}", place)
-        if key not in free:
-            hint = nearest(key, free, "it takes") if free else "it takes none"
-            raise StudyError(f"{algorithm} takes no parameter {key!r}; {hint}", place)
-        value = _like(accepted[key], values.plain_json(value, place))
-        _check_type(value, accepted[key], place)
-        if value != accepted[key] or isinstance(value, bool) is not isinstance(accepted[key], bool):
-            found[key] = value
-    return found
-
-
-def accepted_parameters(algorithm: str) -> dict[str, Any]:
-    """Return what the class of an algorithm takes, with the defaults."""
-    row = CAPABILITIES[algorithm]
-    return _arguments.parameters(_class_of(row), row.name)
-
-
-def _check_type(value: Any, default: Any, where: Where) -> None:
-    """Refuse a value of another type than the default; where there is none, it is a number or a list of numbers."""
-    if isinstance(default, bool):
-        values.flag(value, where)
-    elif isinstance(default, str):
-        values.text(value, where)
-    elif where[-1] == "n_offsprings" or isinstance(default, int):
-        values.whole(value, where, 1)
-    elif isinstance(default, float):
-        values.real(value, where)
-    elif isinstance(value, str | bool | Mapping):
-        raise StudyError(f"{where[-1]} is {values.show(value)}, expected a number or a list of numbers", where)
 
 
 # -- operators ----------------------------------------------------------------------------------------------------------
@@ -194,7 +124,12 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
         if key not in arguments:
             hint = nearest(key, arguments, "it takes") if arguments else "it takes none"
             raise StudyError(f"{name} takes no argument {key!r}; {hint}", (*where, key))
-    given = {key: _like(arguments[key], values.plain_json(value, (*where, key))) for key, value in table.items()}
+        if isinstance(arguments[key], int | float) or key == "prob_var":
+            values.number(table[key], (*where, key))
+    for key, item in inspect.signature(classes[name]).parameters.items():
+        if key in arguments and item.default is item.empty and key not in table:
+            raise StudyError(f"{name} has no {key}, expected such as {{ class = {name!r}, {key} = 2 }}", where)
+    given = {key: values.like(arguments[key], values.plain_json(value, (*where, key))) for key, value in table.items()}
     spec = {"class": name, **arguments, **given}
     try:
         make_operator(slot, spec)
@@ -203,21 +138,17 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
     return spec
 
 
-def _like(default: Any, value: Any) -> Any:
-    """Return a number as the kind of number that the default is, so that 4 and 4.0 are the same."""
-    return float(value) if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool) else value
-
-
 def _own_arguments(cls: type) -> dict[str, Any]:
     """Return the arguments that a class lists, with their defaults."""
     if cls.__init__ is object.__init__:
         return {}
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     listed = [item for item in inspect.signature(cls).parameters.values() if item.kind in kinds]
+    defaults = {item.name: None if item.default is item.empty else item.default for item in listed}
     return {
-        item.name: None if item.default is item.empty else _like(item.default, values.plain_json(item.default, (item.name,)))
-        for item in listed
-        if item.name not in ("name", "vtype", "repair", "func", "cmp_func")
+        key: values.like(default, values.plain_json(default, (key,)))
+        for key, default in defaults.items()
+        if key not in ("name", "vtype", "repair", "func", "cmp_func")
     }
 
 
@@ -251,9 +182,13 @@ def settle(problem: Mapping[str, Any]) -> dict[str, Any]:
     if settled["penalty"] is None and settled["obstacles"] == "penalty":
         settled["penalty"] = DEFAULT_PENALTY
     elif settled["penalty"] is None and settled["obstacles"] == "limit":
-        grid = settled["grid"]
-        settled["penalty"] = float(grid["random"]["size"] ** 2 if "random" in grid else grid["width"] * grid["height"])
+        settled["penalty"] = float(n_cells(settled["grid"]))
     return settled
+
+
+def n_cells(grid: Mapping[str, Any]) -> int:
+    """Return how many cells a grid in canonical form has."""
+    return grid["random"]["size"] ** 2 if "random" in grid else grid["width"] * grid["height"]
 
 
 def resolve(

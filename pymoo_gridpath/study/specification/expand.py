@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from pymoo_gridpath.study.specification import canonical
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.planned_problems import place_of, plan_problems, refuse
 from pymoo_gridpath.study.specification.study import Study
+from pymoo_gridpath.study.specification.trial import Pair, one_of_each_kind, run_briefly
 
 #: Runs that a study may have.
 MAX_RUNS = 1_000_000
@@ -62,7 +64,8 @@ def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> Plan
 
 
 def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[PlannedAlgorithm]) -> None:
-    """Build one problem of each group and every algorithm on it, so that what cannot be is refused before anything runs."""
+    """Build one problem of each group, and every algorithm on it, and try them, so that what fails does so before the runs."""
+    pairs: list[Pair] = []
     first = {group: k for k, group in reversed(list(enumerate(groups)))}
     for group in sorted(first):
         planned = problems[first[group]]
@@ -75,12 +78,21 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
         for k, algorithm in enumerate(algorithms):
             where, about = ("algorithms", k), f"{algorithm.label!r} does not suit the problem {planned.label!r}: "
             content, settled = canonical.resolve(planned.spec, algorithm.spec, algorithm.overrides)
+            if content["obstacles"] == "limit" and content["potential_limit"] is None:
+                message = "obstacles 'limit' needs potential_limit, the largest vulnerability of a path, beside it"
+                raise study.error(message, (*where, "obstacles"))
             problem = refuse(study, where, about, build_problem, content, planned.grid)
-            refuse(study, where, about, build_algorithm, settled, problem)
+            made = refuse(study, where, about, build_algorithm, settled, problem)
+            _check_parameters(study, k, made, problem.n_obj, settled)
             _check_promises(study, k, problem, settled)
+            if not is_exact(settled):
+                pairs.append(Pair(content, settled, planned.grid, planned.label, k))
             if content["representation"] in _monotone() - checked:
                 checked.add(content["representation"])
                 _check_advancing(study, where, members, content)
+    for pair in one_of_each_kind(pairs):
+        about = f"{algorithms[pair.index].label!r} fails on the problem {pair.label!r}: "
+        refuse(study, ("algorithms", pair.index), about, run_briefly, pair)
 
 
 def _monotone() -> set[str]:
@@ -100,6 +112,20 @@ def _check_advancing(study: Study, where, members: list[PlannedProblem], content
         start, goal = planned.spec["start"], planned.spec["goal"]
         about = f"problem {planned.label!r}: "
         refuse(study, where, about, make_representation, content["representation"], grid, start, goal, content["axis"])
+
+
+def _check_parameters(study: Study, k: int, made: Any, n_obj: int, algorithm: Mapping[str, Any]) -> None:
+    """Refuse what pymoo would make fit without a word."""
+    given, where = algorithm.get("parameters", {}), ("algorithms", k, "parameters")
+    if "n_neighbors" in given and given["n_neighbors"] > len(made.ref_dirs):
+        raise study.error(
+            f"n_neighbors is {given['n_neighbors']}, expected at most the {len(made.ref_dirs)} reference directions",
+            (*where, "n_neighbors"),
+        )
+    if "weights" in given and len(given["weights"]) != n_obj:
+        raise study.error(
+            f"weights has {len(given['weights'])} entries, expected one for each of the {n_obj} objectives", (*where, "weights")
+        )
 
 
 def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any]) -> None:
@@ -162,8 +188,5 @@ def _with_references(problems, runs: list[PlannedRun], reference) -> tuple[list[
     wanted = set(keys)
     asked = {run.key: run for run in runs if run.key in wanted}
     first = [asked.get(key, PlannedRun(key, k, None, 0)) for k, key in enumerate(keys)]
-    problems = [
-        PlannedProblem(problem.label, problem.group, problem.spec, problem.grid, key)
-        for problem, key in zip(problems, keys, strict=True)
-    ]
+    problems = [replace(problem, reference=key) for problem, key in zip(problems, keys, strict=True)]
     return problems, first + [run for run in runs if run.key not in asked]

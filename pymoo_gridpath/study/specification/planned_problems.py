@@ -40,10 +40,24 @@ def plan_problems(study: Study) -> tuple[list[PlannedProblem], list[int]]:
             if label in labels:
                 raise study.error(f"the problem {label!r} has the name of another; give one of them another name", place_of(k))
             labels[label] = k
-            problems.append(PlannedProblem(label, spec.label, _settings(spec, item), item.cells))
+            problems.append(PlannedProblem(label, spec.label, _settings(spec, item), item.cells, source=_source(spec, items)))
             groups.append(k)
     _refuse_twins(study, problems, groups)
     return problems, groups
+
+
+def _source(spec: ProblemSpec, items: list[_Item]) -> str:
+    """Return where the map of a problem comes from, in words."""
+    if spec.random is not None:
+        return ""
+    words = [str(spec.map or (spec.grid.name if spec.grid is not None else str(spec.scen).removesuffix(".scen")))]
+    if spec.scen is not None:
+        words.append(f"query {items[0].suffix} of {spec.scen}" if len(items) == 1 else f"numbered queries of {spec.scen}")
+    given = {"resolution": spec.resolution, "unknown": spec.unknown, "threshold": spec.threshold}
+    words += [f"{key} {value}" for key, value in given.items() if value is not None]
+    if spec.radius:
+        words.append(f"obstacles grown by {spec.radius:g} m")
+    return ", ".join(words)
 
 
 def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyGrid]) -> Iterator[_Item]:
@@ -173,6 +187,6 @@ def refuse(study: Study, where, about: str, function, *arguments, **options) -> 
         return function(*arguments, **options)
     except GridPathError as error:
         raise study.error(f"{about}{error}", where) from None
-    except (ValueError, TypeError, ArithmeticError, LookupError, AssertionError) as error:
-        # pymoo's own checks of arguments.
-        raise study.error(f"{about}{type(error).__name__}: {error}", where) from None
+    except Exception as error:
+        # pymoo's own checks of arguments, some of them on several lines.
+        raise study.error(f"{about}{type(error).__name__}: {' '.join(str(error).split())}", where) from None

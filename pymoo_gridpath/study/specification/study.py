@@ -95,7 +95,8 @@ class Study:
         Raises
         ------
         StudyError
-            If a map cannot be read, a query cannot be solved, an algorithm cannot solve a problem, or two of them are the same.
+            If a map cannot be read, a query cannot be solved, an algorithm cannot solve a problem or stops with an error in
+            its first two generations, or two of them are the same.
         """
         from pymoo_gridpath.study.specification.expand import expand
 
@@ -152,19 +153,28 @@ def _specs(cls: Any, items: Any, key: str) -> tuple[Any, ...]:
 
 
 def _budget(value: Any) -> dict[str, int]:
+    if not isinstance(value, Mapping):
+        raise StudyError(
+            f"budget is {values.show(value)}, expected such as {{ evaluations = 20000 }} or {{ generations = 100 }}",
+            ("budget",),
+        )
     given = values.table(value, ("budget",))
     values.check_keys(given, ("evaluations", "generations"), ("budget",), "budget")
     if len(given) != 1:
         raise StudyError(
             f"budget has {len(given)} entries, expected either {{ evaluations = n }} or {{ generations = n }}", ("budget",)
         )
-    return {key: values.whole(number, ("budget", key), 1) for key, number in given.items()}
+    return {key: values.whole(number, ("budget", key), 1, values.MAX_BUDGET) for key, number in given.items()}
 
 
 def _reference(value: Any) -> dict[str, float | int | None] | bool:
     """Return the budget of the reference with its defaults, or False."""
     if value is False:
         return False
+    if value is not True and not isinstance(value, Mapping):
+        raise StudyError(
+            f"reference is {values.show(value)}, expected such as {{ max_seconds = 60 }}, or false", ("reference",)
+        )
     given = values.table({} if value is True else value, ("reference",))
     values.check_keys(given, ("max_seconds", "max_labels"), ("reference",), "reference")
     seconds, labels = given.get("max_seconds"), given.get("max_labels")

@@ -14,6 +14,12 @@ Where = tuple[str | int, ...]
 # The largest seed that NumPy takes.
 MAX_SEED = 2**32 - 1
 MAX_SEEDS = 100_000
+# Far more than a run can do with, so that a zero too many is noticed.
+MAX_POP_SIZE = 100_000
+MAX_BUDGET = 1_000_000_000
+
+# Keys of a study that none of its tables has too.
+_KEYS_OF_STUDY = ("seeds", "budget", "reference", "target")
 
 
 def key_of(where: Where) -> str:
@@ -32,7 +38,15 @@ def check_keys(table: Mapping[str, Any], known: Iterable[str], where: Where, own
     known = list(known)
     for key in table:
         if key not in known:
+            if where:
+                refuse_key_of_study(key, (*where, key), owner)
             raise StudyError(f"{owner} has no key {key!r}; {nearest(key, known)}", (*where, key))
+
+
+def refuse_key_of_study(key: str, where: Where, owner: str) -> None:
+    """Refuse a key of the study that stands below the head of a table, which makes it a key of that table."""
+    if key in _KEYS_OF_STUDY:
+        raise StudyError(f"{key} is a key of the study, not of {owner}; write it above the first [[...]] table", where)
 
 
 def table(value: object, where: Where) -> dict[str, Any]:
@@ -84,6 +98,14 @@ def real(value: object, where: Where, least: float = 0.0, most: float | None = N
     if not fits or number < least or (open_below and number == least) or (most is not None and number > most):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected a number, {within}", where)
     return float(number)
+
+
+def number(value: object, where: Where) -> int | float:
+    """Return a finite number."""
+    found = _plain(value)
+    if not isinstance(found, int | float) or isinstance(found, bool) or not math.isfinite(found):
+        raise StudyError(f"{key_of(where)} is {show(value)}, expected a number", where)
+    return found
 
 
 def cell(value: object, where: Where) -> tuple[int, int]:
@@ -141,6 +163,11 @@ def plain_json(value: object, where: Where) -> Any:
     if value is None or isinstance(value, bool | int | str):
         return value
     raise StudyError(f"{key_of(where)} is {show(value)}, expected a finite number, a text, true, false, or a list", where)
+
+
+def like(default: object, value: Any) -> Any:
+    """Return a number as the kind of number that the default is, so that 4 and 4.0 are the same."""
+    return float(value) if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool) else value
 
 
 def _plain(value: object) -> Any:

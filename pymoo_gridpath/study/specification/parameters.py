@@ -1,0 +1,153 @@
+"""Further arguments of the algorithms, as a study gives them, with the values that pymoo takes without a word refused."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from pymoo.operators.crossover.dex import DE_REPAIRS
+
+from pymoo_gridpath.algorithms import CAPABILITIES, _arguments
+from pymoo_gridpath.algorithms.factory import _class_of
+from pymoo_gridpath.errors import StudyError, nearest
+from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.study.specification.values import MAX_POP_SIZE, Where
+
+# Arguments of pymoo's algorithms that are not for a study file to set.
+_ELSEWHERE = {
+    "seed": "the seeds of the study",
+    "termination": "the budget of the study",
+    "pop_size": "the key pop_size of the algorithm",
+    "smoothness": "the key smoothness of the algorithm",
+    **dict.fromkeys(
+        ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates"), "the key operators of the algorithm"
+    ),
+}
+_NO_EFFECT = ("return_least_infeasible", "save_history", "verbose", "save_ps")
+_OBJECTS = (
+    "selection",
+    "survival",
+    "output",
+    "display",
+    "callback",
+    "archive",
+    "evaluator",
+    "decomposition",
+    "automated_dm",
+    "ps",
+)
+
+# Values that mean something to pymoo; it takes others as well, and heeds them not at all or in the midst of a run.
+_NAMES = {"normalization": ("front", "ever", "no"), "version": ("A", "B"), "de_repair": tuple(DE_REPAIRS)}
+_SHARES = ("prob_neighbor_mating", "CR", "perc_detect_change", "perc_diversity", "mu")
+_LEAST = {"n_neighbors": 2, "batch_size": 1, "pop_per_ref_point": 1, "n_offsprings": 1}
+_BASES_OF_VARIANTS = ("rand", "best", "current-to-best", "current-to-rand", "ranked")
+_CROSSOVERS_OF_VARIANTS = ("bin", "exp")
+
+
+def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
+    """Return further arguments of an algorithm, without those at their default.
+
+    Raises
+    ------
+    StudyError
+        If it takes no such argument, a study cannot set it, or the value is of another type than the default or means nothing.
+    """
+    accepted = accepted_parameters(algorithm)
+    free = [key for key in accepted if key not in (*_ELSEWHERE, *_NO_EFFECT, *_OBJECTS)]
+    found = {}
+    for key, value in values.table(given, where).items():
+        place = (*where, key)
+        values.refuse_key_of_study(key, place, "the parameters of an algorithm")
+        if key in _ELSEWHERE:
+            raise StudyError(f"{key} is set by {_ELSEWHERE[key]}, not among its parameters", place)
+        if key in accepted and key in (*_NO_EFFECT, *_OBJECTS):
+            why = "is an object of Python, which" if key in _OBJECTS else "changes no result, so that"
+            raise StudyError(f"{key} {why} a study does not set; {algorithm} takes {', '.join(free) or 'nothing else'}", place)
+        if key not in free:
+            hint = nearest(key, free, "it takes") if free else "it takes none"
+            raise StudyError(f"{algorithm} takes no parameter {key!r}; {hint}", place)
+        value = values.like(accepted[key], values.plain_json(value, place))
+        if value != accepted[key] or isinstance(value, bool) is not isinstance(accepted[key], bool):
+            _check(key, value, accepted[key], place)
+            found[key] = value
+    return found
+
+
+def accepted_parameters(algorithm: str) -> dict[str, Any]:
+    """Return what the class of an algorithm takes, with the defaults."""
+    row = CAPABILITIES[algorithm]
+    return _arguments.parameters(_class_of(row), row.name)
+
+
+def _check(key: str, value: Any, default: Any, where: Where) -> None:
+    """Refuse a value that means nothing, or is of another type than the default."""
+    if key in _NAMES:
+        values.choice(value, _NAMES[key], where)
+    elif key in _LEAST:
+        values.whole(value, where, _LEAST[key], MAX_POP_SIZE)
+    elif key in _SHARES or key == "adapt_freq":
+        values.real(value, where, 0.0, 1.0, open_below=key == "adapt_freq")
+    elif key in _OWN_CHECKS:
+        _OWN_CHECKS[key](value, where)
+    elif isinstance(default, bool):
+        values.flag(value, where)
+    elif isinstance(default, int):
+        values.whole(value, where, 1)
+    else:
+        values.real(value, where)
+
+
+def _check_variant(value: Any, where: Where) -> None:
+    match = re.fullmatch(r"DE/(.+)/([1-9]\d?)/(.+)", value) if isinstance(value, str) else None
+    if match is None or match[1] not in _BASES_OF_VARIANTS or match[3] not in _CROSSOVERS_OF_VARIANTS:
+        number = match[2] if match else "1"
+        values.choice(value, [f"DE/{a}/{number}/{b}" for a in _BASES_OF_VARIANTS for b in _CROSSOVERS_OF_VARIANTS], where)
+
+
+def _check_scale(value: Any, where: Where) -> None:
+    """Refuse what is neither a scale factor of differences nor a range that it is drawn from."""
+    ends = value if isinstance(value, list) else [value, value]
+    if not _are_numbers(ends) or len(ends) != 2 or not 0 <= ends[0] <= ends[1] <= 2 or ends[1] == 0:
+        raise StudyError(
+            f"{where[-1]} is {values.show(value)}, expected a number above 0, at most 2, or a range such as [0.2, 0.8]", where
+        )
+
+
+def _check_weights(value: Any, where: Where) -> None:
+    if not _are_numbers(value) or min(value) < 0 or not any(value):
+        raise StudyError(f"{where[-1]} is {values.show(value)}, expected one for each objective, such as [0.5, 0.5]", where)
+
+
+def _check_points(value: Any, where: Where) -> None:
+    if not _are_rows(value):
+        raise StudyError(
+            f"{where[-1]} is {values.show(value)}, expected points of a number for each objective, such as [[30, 5], [40, 2]]",
+            where,
+        )
+
+
+def _check_directions(value: Any, where: Where) -> None:
+    if not _are_rows(value) or any(min(row) < 0 or not any(row) for row in value):
+        raise StudyError(
+            f"{where[-1]} is {values.show(value)}, expected directions of a share for each objective, such as [[0, 1], [1, 0]]",
+            where,
+        )
+
+
+def _are_rows(value: Any) -> bool:
+    """Whether it is one or more lists of numbers, all as long as the first."""
+    return isinstance(value, list) and len(value) > 0 and all(_are_numbers(row) and len(row) == len(value[0]) for row in value)
+
+
+def _are_numbers(value: Any) -> bool:
+    return isinstance(value, list) and len(value) > 0 and all(type(item) in (int, float) for item in value)
+
+
+_OWN_CHECKS = {
+    "variant": _check_variant,
+    "F": _check_scale,
+    "weights": _check_weights,
+    "ref_points": _check_points,
+    "ref_dirs": _check_directions,
+}
