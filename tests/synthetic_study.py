@@ -1,8 +1,13 @@
-"""Stores of made-up runs, of any size and state, whose fronts approach a known one."""
+"""Stores of made-up runs, of any size and state, whose fronts approach a known one, and how to read their reports."""
 
 from __future__ import annotations
 
+import csv
+import hashlib
+import io
 import itertools
+from html.parser import HTMLParser
+from pathlib import Path
 
 import moocore
 import numpy as np
@@ -143,3 +148,45 @@ def fill(folder, plan, n_records=100, n_points=20, skip=(), failed=(), incomplet
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(to_bytes(record))
     return store
+
+
+def digests(folder):
+    """Return the hash of each file under a folder by name."""
+    files = sorted(path for path in Path(folder).rglob("*") if path.is_file())
+    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+
+
+def rows(path):
+    """Return the rows of a CSV file as dictionaries."""
+    return list(csv.DictReader(io.StringIO(Path(path).read_text(encoding="utf-8"))))
+
+
+def texts(folder):
+    """Return the texts of a report that people read."""
+    names = ("index.html", "report.md", "tables.tex")
+    return [(Path(folder) / name).read_text(encoding="utf-8") for name in names]
+
+
+class Page(HTMLParser):
+    """Checks that tags are closed in order, and keeps text and addresses."""
+
+    VOID = ("meta", "img", "br")
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tags, self.words, self.addresses, self.ids = [], [], [], [], []
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.addresses += [value for name, value in attrs if name in ("src", "href", "srcset", "data", "action")]
+        self.ids += [value for name, value in attrs if name == "id"]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)

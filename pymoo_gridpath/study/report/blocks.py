@@ -8,7 +8,10 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from pymoo_gridpath.study.report.tables import Table, escape_latex, escape_markdown
+from pymoo_gridpath.study.report.tables import LATEX_HEAD, Table, escape_latex, escape_markdown
+
+# Of a table in LaTeX, which is not broken across pages.
+_MOST_ROWS = 50
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,13 @@ class Caution:
     """Sentences that a reader must not miss, one each."""
 
     texts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Listing:
+    """The text of a file, shown as it is."""
+
+    text: str
 
 
 @dataclass(frozen=True)
@@ -72,7 +82,7 @@ class Fold:
     blocks: tuple[Block, ...]
 
 
-Block = Heading | Text | Caution | Table | Drawing | Picture | Fold
+Block = Heading | Text | Caution | Listing | Table | Drawing | Picture | Fold
 
 
 def markdown(blocks: Iterable[Block], folder: str) -> str:
@@ -87,6 +97,8 @@ def _markdown(block: Block, folder: str) -> str:
         return f"{escape_markdown(block.text)}\n"
     if isinstance(block, Caution):
         return "\n".join(f"> **Caution.** {escape_markdown(text)}\n" for text in block.texts)
+    if isinstance(block, Listing):
+        return "".join(f"    {line}\n" for line in block.text.splitlines())
     if isinstance(block, Table):
         return block.markdown()
     if isinstance(block, Picture):
@@ -116,7 +128,7 @@ def linked_files(text: str, folder: str) -> list[str]:
 
 def latex(blocks: Iterable[Block]) -> str:
     """Return the tables of blocks in LaTeX, and their warnings as comments."""
-    parts = ["% Tables for \\input{tables.tex}; they need \\usepackage{booktabs} and the T1 font encoding.\n"]
+    parts = [LATEX_HEAD]
     for block in blocks:
         if isinstance(block, Heading):
             parts.append(f"% -- {' '.join(block.text.splitlines())}\n")
@@ -124,5 +136,6 @@ def latex(blocks: Iterable[Block]) -> str:
             parts += [f"% Caution. {escape_latex(text)}\n" for text in block.texts]
         for inner in block.blocks if isinstance(block, Fold) else (block,):
             if isinstance(inner, Table) and inner.for_papers:
-                parts.append(inner.latex())
+                long = len(inner.rows) > _MOST_ROWS
+                parts.append(f"% {inner.name} is too long for a page\n" if long else inner.latex())
     return "\n".join(parts)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
-from pymoo_gridpath.study.report import settings, summary
+from pymoo_gridpath.study.report import definitions, settings, state, summary
 from pymoo_gridpath.study.report.blocks import Block, Caution, Drawing, Fold, Heading, Text
 from pymoo_gridpath.study.report.comparisons import TESTED, Comparison, compare, compare_each, could_tell
 from pymoo_gridpath.study.report.csv_files import Family
@@ -14,6 +14,7 @@ from pymoo_gridpath.study.report.figure_style import AlgorithmStyle, algorithm_s
 from pymoo_gridpath.study.report.front_plots import plot_attainment, plot_fronts
 from pymoo_gridpath.study.report.plots import plot_convergence, plot_ranks, plot_ratios
 from pymoo_gridpath.study.report.results import Results
+from pymoo_gridpath.study.report.stretched_axis import SCALE_SENTENCE
 
 # Beyond these numbers, tables and figures of single problems or groups would bury the page.
 _MOST_PROBLEMS = 40
@@ -48,12 +49,12 @@ class Contents:
         results = self.results
         yield Heading(f"Study {results.plan.name}", 1)
         if not any(run.finished for run in results.runs):
-            state = settings.state_sentence(results)
-            yield Caution((f"No run of this study is finished, so that there is nothing to report: {state}",))
-            yield from settings.unfinished_blocks(results)
+            sentence = state.state_sentence(results)
+            yield Caution((f"No run of this study is finished, so that there is nothing to report: {sentence}",))
+            yield from state.unfinished_blocks(results)
             return
-        yield Text(settings.state_sentence(results))
-        cautions = settings.general_cautions(results)
+        yield Text(state.state_sentence(results))
+        cautions = state.general_cautions(results)
         if cautions:
             yield Caution(tuple(cautions))
         yield from settings.settings_blocks(results, self.times)
@@ -62,10 +63,10 @@ class Contents:
         names = slugs(["all", *results.groups])
         for group, problems in results.groups.items():
             yield from self._group(group, names[group], problems)
-        yield from settings.unfinished_blocks(results)
-        yield from settings.definition_blocks(results, self.times)
+        yield from state.unfinished_blocks(results)
+        yield from definitions.definition_blocks(results, self.times)
         if self.times:
-            yield from settings.origin_blocks(results)
+            yield from definitions.origin_blocks(results)
 
     def _overview(self) -> Iterator[Block]:
         """Yield what covers all groups: their final ratios and, of several, the comparison across all problems."""
@@ -74,7 +75,7 @@ class Contents:
         everything = list(range(len(results.plan.problems)))
         against = summary.reference_phrase(results, everything)
         if len(groups) > 1:
-            what = f"Median hypervolume ratio to {against}, over the finished runs of each group."
+            what = f"Median hypervolume ratio over the finished runs on each group of problems. Ratios are to {against}."
             yield summary.matrix_table(results, groups, "overview", what, "group")
         names = list(groups)
         for begin in range(0, len(names), _GROUPS_A_FIGURE):
@@ -83,7 +84,8 @@ class Contents:
             problems = [problem for members in shown.values() for problem in members]
             caption = (
                 f"Hypervolume ratio of the final front to {summary.reference_phrase(results, problems)}: every "
-                "finished run is a point; the box reaches from the lower to the upper quartile, the thick line is the median."
+                "finished run is a point; the box reaches from the lower to the upper quartile, the thick line is the median. "
+                + SCALE_SENTENCE
             )
             yield Drawing(f"ratios{number}", caption, partial(plot_ratios, results, shown, self.styles), "")
         if len(groups) > 1:
@@ -96,8 +98,9 @@ class Contents:
         yield summary.quality_table(results, problems, name, place, comparison)
         yield summary.effort_table(results, problems, name, place, self.times)
         if 1 < len(problems) <= _MOST_PROBLEMS:
+            against = summary.reference_phrase(results, problems)
             rows = {results.plan.problems[k].label: [k] for k in problems}
-            what = f"Median hypervolume ratio on each problem of {group}, to {summary.reference_phrase(results, problems)}."
+            what = f"Median hypervolume ratio on each problem of {group}. Ratios are to {against}."
             yield Fold("Each problem", (summary.matrix_table(results, rows, f"{name}-problems", what, "problem"),))
         elif len(problems) > 1:
             yield Text("The numbers of each problem stand in summary.csv.")
@@ -114,15 +117,16 @@ class Contents:
             f"Convergence on {group}: median (line) and quartiles (band) over the finished {over}. Ratios are to "
             f"{summary.reference_phrase(results, problems)}; lengths are over the least length on that front; legal members "
             "are those of the population that are legal paths. What is far off in the first tenth is cut, and there is no "
-            "line where half of the runs have no legal path to measure."
+            f"line where half of the runs have no legal path to measure. {SCALE_SENTENCE}"
         )
         draw = partial(plot_convergence, results, problems, self.styles)
         yield Drawing(f"convergence-{name}", caption, draw, f"No run on {group} has a history to draw.")
         first = label if len(problems) == 1 else f"{label}, the first of the {len(problems)} problems of {group}"
         against = summary.reference_phrase(results, problems[:1])
         caption = (
-            f"Empirical attainment surfaces on {first}, beside {against}: the border of what half of the runs attain, "
-            "what a quarter and three quarters do, and what any and all do. Runs without a legal path attain nothing."
+            f"Empirical attainment surfaces on {first}: the border of what any run, half of the runs and all runs attain; the "
+            f"band lies between a quarter and three quarters of them. Lines that coincide are drawn over one another. In grey "
+            f"{against}. Runs without a legal path attain nothing."
         )
         n_obj = len(results.plan.problems[problems[0]].spec["objectives"])
         random = any(results.finished(k, problems[:1]) for k in range(len(results.algorithms)) if not results.is_exact(k))
@@ -131,7 +135,8 @@ class Contents:
         draw = partial(plot_attainment, results, problems[0], self.styles)
         yield Drawing(f"attainment-{name}", caption, draw, f"No attainment surfaces on {first}: {why}.")
         caption = (
-            f"Merged fronts of all runs of each algorithm on {first}, beside {against}, and how many of its points they hold."
+            f"Merged fronts of all runs of each algorithm on {first}. In grey {against}; titles say how many of its points are "
+            "among those found."
         )
         if n_obj > 2:
             caption += f" Of {n_obj} objectives the first two are shown."
@@ -170,11 +175,10 @@ class Contents:
         assert comparison.friedman is not None
         labels = [self.results.algorithms[k] for k in comparison.algorithms]
         caption = (
-            f"Average ranks by the median hypervolume ratio over {comparison.n_blocks} problems {place}, 1 the best. "
+            f"Average ranks {place} by the median hypervolume ratio of each of {comparison.n_blocks} problems, 1 the best. "
             "A bar joins algorithms whose ranks do not differ significantly. " + summary.friedman_sentence(comparison)
         )
-        title = summary.friedman_sentence(comparison).split(" Nemenyi")[0]
-        return Drawing(f"ranks-{name}", caption, partial(plot_ranks, comparison.friedman, labels, title), "")
+        return Drawing(f"ranks-{name}", caption, partial(plot_ranks, comparison.friedman, labels), "")
 
     def _each(self, problems: Sequence[int], measure: str, name: str, place: str) -> list[Block]:
         """Return the tests of single problems, if any could tell algorithms apart; keep them."""

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pymoo_gridpath.study.plan import PlannedProblem
 from pymoo_gridpath.study.report.comparisons import Comparison, could_tell
 from pymoo_gridpath.study.report.measures import quartiles
 from pymoo_gridpath.study.report.results import Results, gist
@@ -71,12 +72,19 @@ def _runs(results: Results, measures: list[str]) -> tuple[list[str], Iterator[li
 
 def _problems(results: Results, times: bool) -> tuple[list[str], Iterator[list]]:
     """Return header and rows of the problems and the fronts that their runs are measured against."""
-    header = ["group", "problem", "reference", "reference_points", "reason", "exceeded"]
+    grid = ["width", "height", "corner_cutting", "p0", "grid_seed", "map", "map_digest"]
+    given = ["representation", "axis", "obstacles", "penalty", "potential_limit"]
+    header = ["group", "problem", *grid, "start", "goal", "objectives", *given]
+    header += ["reference", "reference_points", "reason", "exceeded"]
 
     def rows() -> Iterator[list]:
         for problem, reference in zip(results.plan.problems, results.references, strict=True):
             kind = "exact" if reference.front.exact else "merged"
-            row = [problem.group, problem.label, kind, len(reference.front), reference.reason, _truth(reference.exceeded)]
+            spec = problem.spec
+            row = [problem.group, problem.label, *_grid(problem)]
+            row += [" ".join(map(str, spec[key])) for key in ("start", "goal", "objectives")]
+            row += [spec[key] for key in given]
+            row += [kind, len(reference.front), reference.reason, _truth(reference.exceeded)]
             yield [*row, reference.seconds] if times else row
 
     return [*header, "exact_seconds"] if times else header, rows()
@@ -136,6 +144,15 @@ def _tests(results: Results, families: Sequence[Family]) -> tuple[list[str], Ite
                         yield [*head, None, None, "average rank", rank, None, None, None]
 
     return header, rows()
+
+
+def _grid(problem: PlannedProblem) -> list:
+    """Return size, rule and origin of a grid; of random ones there is no map, of maps no probability and seed."""
+    grid = problem.spec["grid"]
+    if "random" in grid:
+        family = grid["random"]
+        return [family["size"], family["size"], _truth(family["corner_cutting"]), family["p0"], family["seed"], None, None]
+    return [grid["width"], grid["height"], _truth(grid["corner_cutting"]), None, None, problem.source, grid["digest"]]
 
 
 def _truth(value: bool) -> str:

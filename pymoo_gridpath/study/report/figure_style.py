@@ -33,6 +33,9 @@ _METADATA: dict[str, dict] = {
     "svg": {"Date": None, "Creator": None},
 }
 
+# Height in inches of a row of a legend.
+_LEGEND_ROW = 0.17
+
 # Longer names are shortened in figures.
 _LONGEST = 30
 
@@ -127,7 +130,7 @@ def plain(ax: Axes) -> None:
 
 
 def legend_above(figure: Figure, handles: Sequence) -> None:
-    """Put a legend above all panels, in as many columns as fit."""
+    """Put a legend above all panels, in as many columns as fit; the figure grows by its rows beyond the first."""
     if not handles:
         return
     widths = [0.07 * len(str(handle.get_label())) + 0.55 for handle in handles]
@@ -136,6 +139,7 @@ def legend_above(figure: Figure, handles: Sequence) -> None:
         columns = [widths[begin : begin + rows] for begin in range(0, len(widths), rows)]
         if sum(max(column) for column in columns) <= figure.get_size_inches()[0]:
             break
+    figure.set_figheight(figure.get_figheight() + _LEGEND_ROW * (max(map(len, columns)) - 1))
     look = {"columnspacing": 1.4, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside upper center", ncols=len(columns), **look)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import moocore
 import numpy as np
@@ -15,6 +16,11 @@ from pymoo_gridpath.objectives import OBJECTIVES
 from pymoo_gridpath.study.report.figure_style import REFERENCE, AlgorithmStyle, legend_above, panel_figure, panel_title
 from pymoo_gridpath.study.report.measures import SAME, ReferenceFront, merge_fronts
 from pymoo_gridpath.study.report.results import Results
+
+# Lines of attainment surfaces, which differ in grey print too.
+_BENEATH: dict[str, Any] = {"color": "#bcc0c6", "linewidth": 2.8, "solid_joinstyle": "miter"}
+_BEST: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (0.9, 1.3))}
+_WORST: dict[str, Any] = {"linewidth": 0.8, "linestyle": (0, (6, 2))}
 
 
 def attainment_surfaces(fronts: Sequence[np.ndarray], shares: Sequence[float]) -> list[np.ndarray]:
@@ -64,19 +70,21 @@ def plot_attainment(results: Results, problem: int, styles: Sequence[AlgorithmSt
         x = np.unique(np.concatenate([upper[:, 0], lower[:, 0], [low[0], high[0]]]))
         between = _height(upper, x, high[1]), _height(lower, x, high[1])
         ax.fill_between(x, *between, step="post", color=color, alpha=0.25, linewidth=0)
-        for front in (best, worst):
-            ax.plot(*_stairs(front, low, high), color=color, linewidth=0.6, linestyle=(0, (2, 1.5)))
-        ax.plot(*_stairs(reference.points, low, high), color=REFERENCE, linewidth=0.9)
-        ax.plot(*_stairs(median, low, high), color=color, linewidth=1.3)
+        # Broad and pale, so that it is seen beneath surfaces that reach it.
+        ax.plot(*_stairs(reference.points, low, high), **_BENEATH)
+        ax.plot(*_stairs(best, low, high), color=color, **_BEST)
+        ax.plot(*_stairs(worst, low, high), color=color, **_WORST)
+        ax.plot(*_stairs(median, low, high), color=color, linewidth=1.1)
         ax.set_title(panel_title(styles[k].label), loc="left")
         if not len(median):
             ax.text(0.5, 0.5, "half of the runs or more\nhave no legal path", transform=ax.transAxes, ha="center", va="center")
     _finish(results, problem, figure, axes, low, high)
     handles = [
-        Line2D([], [], color=REFERENCE, linewidth=0.9, label=_reference_name(reference)),
-        Line2D([], [], color="black", linewidth=1.3, label="attained by half of the runs"),
-        Patch(facecolor="black", alpha=0.25, label="by 25 % to 75 %"),
-        Line2D([], [], color="black", linewidth=0.6, linestyle=(0, (2, 1.5)), label="by any run, by all runs"),
+        Line2D([], [], **_BENEATH, label=_reference_name(reference)),
+        Line2D([], [], color="black", **_BEST, label="attained by any run"),
+        Line2D([], [], color="black", linewidth=1.1, label="by half of the runs"),
+        Patch(facecolor="black", alpha=0.25, linewidth=0, label="by 25 % to 75 %"),
+        Line2D([], [], color="black", **_WORST, label="by all runs"),
     ]
     legend_above(figure, handles)
     return figure
@@ -91,15 +99,14 @@ def plot_fronts(results: Results, problem: int, styles: Sequence[AlgorithmStyle]
     reference = results.references[problem].front
     merged = {k: merge_fronts(found) for k, found in fronts.items()}
     low, high = _limits([reference.points, *merged.values()])
-    figure, axes = panel_figure(len(merged), 4, 1.75, extra=0.45)
+    figure, axes = panel_figure(len(merged), 4, 1.85, extra=0.45)
     for ax, (k, front) in zip(axes, merged.items(), strict=True):
         if n_obj == 2:
             ax.plot(*_stairs(reference.points, low, high), color=REFERENCE, linewidth=0.7, zorder=1)
         ax.scatter(*reference.points[:, :2].T, s=18, facecolors="none", edgecolors=REFERENCE, linewidths=0.6, zorder=2)
         ax.scatter(*front[:, :2].T, s=9, color=styles[k].color, linewidths=0, marker=styles[k].marker, zorder=3)
-        ax.set_title(panel_title(styles[k].label), loc="left")
-        note = f"{_found(reference, front)} of {len(reference)}"
-        ax.text(0.97, 0.97, note, transform=ax.transAxes, ha="right", va="top")
+        found = f"{_found(reference, front)} of {len(reference)} points"
+        ax.set_title(f"{panel_title(styles[k].label)}\n{found}", loc="left")
     _finish(results, problem, figure, axes, low, high)
     ring = {"marker": "o", "markersize": 4, "markerfacecolor": "none", "linestyle": "-" if n_obj == 2 else ""}
     handles = [

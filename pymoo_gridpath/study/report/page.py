@@ -6,7 +6,7 @@ import base64
 import html
 from collections.abc import Iterable, Iterator, Sequence
 
-from pymoo_gridpath.study.report.blocks import Block, Caution, Fold, Heading, Picture, Text
+from pymoo_gridpath.study.report.blocks import Block, Caution, Fold, Heading, Listing, Picture, Text
 from pymoo_gridpath.study.report.contents import unique_slugs
 from pymoo_gridpath.study.report.tables import Table
 
@@ -35,6 +35,7 @@ figure { margin: 1.5rem 0; }
 figure img { max-width: 100%; height: auto; }
 figcaption { font-size: 0.875rem; color: #33373d; max-width: 46rem; }
 details { margin: 1rem 0; }
+pre { font-size: 0.8125rem; background: #f6f7f9; padding: 0.5rem 1rem; overflow-x: auto; }
 """.strip()
 
 
@@ -84,6 +85,8 @@ def _rendered(blocks: Iterable[Block], anchors: Iterator[str]) -> list[str]:
         elif isinstance(block, Caution):
             inner = "".join(f"<p>{html.escape(text)}</p>" for text in block.texts)
             lines.append(f'<div class="caution" role="note"><strong>Caution</strong>{inner}</div>')
+        elif isinstance(block, Listing):
+            lines.append(f"<pre>{html.escape(block.text)}</pre>")
         elif isinstance(block, Table):
             lines.append(block.html())
         elif isinstance(block, Picture):

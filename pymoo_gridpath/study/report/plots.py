@@ -21,6 +21,7 @@ from pymoo_gridpath.study.report.figure_style import (
 from pymoo_gridpath.study.report.measures import quartiles
 from pymoo_gridpath.study.report.results import Curve, Results
 from pymoo_gridpath.study.report.statistics import ALPHA, Friedman, cliques
+from pymoo_gridpath.study.report.stretched_axis import stretch, stretch_unit
 
 # Numbers of evaluations at which bands are drawn.
 _STEPS = 121
@@ -77,27 +78,28 @@ def plot_convergence(results: Results, problems: Sequence[int], styles: Sequence
             every = (place * 20 // max(len(curves), 1), 20)
             look = {"marker": style.marker, "markersize": 3.5, "markevery": every, "linewidth": 1.1, "drawstyle": "steps-post"}
             ax.plot(steps, np.where(np.isfinite(middle), middle, np.nan), color=style.color, **look)
-        if quantity != "legal":
-            _zoom(ax, np.concatenate(late, axis=1))
+        # What came before does not flatten what runs have settled to.
+        settled = np.concatenate(late, axis=1)
+        settled = settled[np.isfinite(settled)]
         ax.set_xlabel("Evaluations")
         ax.set_ylabel(label)
         ax.set_xlim(left=0.0)
         ax.xaxis.set_major_locator(MaxNLocator(4, integer=True))
         ax.yaxis.get_major_formatter().set_useOffset(False)
+        if quantity == "ratio":
+            stretch(ax.yaxis, stretch_unit(results, problems), settled, n_marks=12)
+        elif quantity == "length" and len(settled):
+            room = 0.06 * np.ptp(settled) or 0.05
+            ax.set_ylim(settled.min() - room, settled.max() + room)
         plain(ax)
-    axes[0].axhline(results.target, color=REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)))
-    target = Line2D([], [], color=REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)), label=f"target {results.target:g}")
-    legend_above(figure, [*(styles[k].handle(line=True) for k in curves), target])
+    handles = [styles[k].handle(line=True) for k in curves]
+    low, high = axes[0].get_ylim()
+    if low <= results.target <= high:
+        look = {"color": REFERENCE, "linewidth": 0.8, "linestyle": (0, (4, 2))}
+        axes[0].axhline(results.target, **look)
+        handles.append(Line2D([], [], **look, label=f"target {results.target:g}"))
+    legend_above(figure, handles)
     return figure
-
-
-def _zoom(ax, values: np.ndarray) -> None:
-    """Let an axis reach as far as values do, so that what came before them does not flatten them."""
-    values = values[np.isfinite(values)]
-    if len(values):
-        low, high = values.min(), values.max()
-        room = 0.06 * (high - low) or 0.05
-        ax.set_ylim(low - room, high + room)
 
 
 def plot_ratios(results: Results, groups: dict[str, list[int]], styles: Sequence[AlgorithmStyle]) -> Figure:
@@ -113,9 +115,8 @@ def plot_ratios(results: Results, groups: dict[str, list[int]], styles: Sequence
         for k, style in enumerate(styles):
             _strip(ax, results.values("ratio", k, problems), k, style)
         ax.set_title(name, loc="left")
-        ax.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10], min_n_ticks=2))
-        ax.xaxis.get_major_formatter().set_useOffset(False)
-        ax.margins(x=0.06)
+        ratios = np.concatenate([results.values("ratio", k, problems) for k in range(len(styles))])
+        stretch(ax.xaxis, stretch_unit(results, problems), ratios, n_marks=6)
         ax.tick_params(axis="y", length=0)
         plain(ax)
     axes[0].set_yticks(range(len(styles)), [style.label for style in styles])
@@ -143,7 +144,7 @@ def _strip(ax, values: np.ndarray, place: int, style: AlgorithmStyle) -> None:
         ax.plot([middle, middle], [bottom, top], color=color, linewidth=2.0 + extra, solid_capstyle="butt")
 
 
-def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
+def plot_ranks(friedman: Friedman, labels: Sequence[str]) -> Figure:
     """Draw a critical-difference diagram: average ranks, and bars that join those that do not differ significantly.
 
     Parameters
@@ -151,7 +152,6 @@ def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
     friedman : Friedman
     labels : sequence of str
         Of the algorithms, three or more.
-    title : str
 
     References
     ----------
@@ -168,7 +168,7 @@ def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
     x = left + (ranks - 1.0) / (k - 1) * (right - left)
     first_label = 0.2 + 0.11 * len(bars)
     bottom = first_label + 0.2 * (half - 1) + 0.15
-    top = -0.72
+    top = -0.55
     figure = Figure(figsize=(WIDTH, bottom - top))
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     ax.set_xlim(0.0, WIDTH)
@@ -182,7 +182,6 @@ def plot_ranks(friedman: Friedman, labels: Sequence[str], title: str) -> Figure:
         if whole:
             ax.text(place, -0.08, f"{tick:.0f}", ha="center", va="bottom")
     _draw_difference(ax, friedman.critical_difference, k, left, right)
-    ax.text(0.06, top + 0.1, title, ha="left", va="center")
     for place, (rank, name) in enumerate(zip(ranks, names, strict=True)):
         on_left = place < half
         depth = first_label + 0.2 * (place if on_left else k - 1 - place)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from collections import Counter
@@ -128,6 +129,10 @@ class Results:
         One a problem.
     machines, versions : collections.Counter
         How many runs were made on which machine and with which versions, as JSON texts.
+    reference_states : collections.Counter
+        How many runs have which status among those that are but the reference of a problem.
+    study_file : str or None
+        The text of the study file, if the study was run from one.
     """
 
     plan: Plan
@@ -136,6 +141,8 @@ class Results:
     references: list[ProblemReference] = field(default_factory=list)
     machines: Counter = field(default_factory=Counter)
     versions: Counter = field(default_factory=Counter)
+    reference_states: Counter = field(default_factory=Counter)
+    study_file: str | None = None
 
     def __post_init__(self):
         self._cells: dict[tuple[int, int], list[RunResult]] | None = None
@@ -192,6 +199,8 @@ def collect(store: Store, target: float | None = None) -> Results:
     results = Results(plan, plan.target if target is None else target)
     if not (isinstance(results.target, int | float) and 0.0 < results.target <= 1.0):
         raise GridPathError(f"target is {target!r}, expected a hypervolume ratio above 0, at most 1")
+    with contextlib.suppress(OSError):
+        results.study_file = (store.folder / "study.toml").read_text(encoding="utf-8", errors="replace")
     by_problem: list[list[PlannedRun]] = [[] for _ in plan.problems]
     for run in plan.runs:
         by_problem[run.problem].append(run)
@@ -207,8 +216,10 @@ def collect(store: Store, target: float | None = None) -> Results:
         reference = _reference(plan, problem, records)
         results.references.append(reference)
         for run in runs:
-            if run.algorithm is not None:
-                record, status = records[run.key]
+            record, status = records[run.key]
+            if run.algorithm is None:
+                results.reference_states[status] += 1
+            else:
                 result = RunResult(run.key, run.problem, run.algorithm, run.seed, status)
                 if record is not None:
                     _measure(result, record, reference.front, results.target, keep_front=problem in keep)

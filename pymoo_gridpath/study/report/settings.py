@@ -1,214 +1,202 @@
-"""What a study was asked for, what is missing of it, and where it ran: the parts of a report around its results."""
+"""What a study was asked for: its problems, algorithms, seeds and budget, in words."""
 
 from __future__ import annotations
 
-import json
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from pymoo_gridpath.study.plan import PlannedAlgorithm
-from pymoo_gridpath.study.report.blocks import Block, Heading, Text
-from pymoo_gridpath.study.report.measures import SAME, quartiles
-from pymoo_gridpath.study.report.results import Results, gist
+from pymoo_gridpath.study.plan import PlannedAlgorithm, PlannedProblem
+from pymoo_gridpath.study.report.blocks import Block, Fold, Heading, Listing, Text
+from pymoo_gridpath.study.report.measures import quartiles
+from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.summary import reference_phrase
-from pymoo_gridpath.study.report.tables import Table, count, significant, spread
+from pymoo_gridpath.study.report.tables import NOTHING, Table, count, significant, spread
 from pymoo_gridpath.study.specification.canonical import resolve
 
-# Rows of lists of single runs or problems.
+# Rows of the list of single problems.
 _MOST_ROWS = 40
 
-
-def state_sentence(results: Results) -> str:
-    """Return how many of the planned runs are finished, and what became of the others."""
-    states = Counter(run.status for run in results.runs)
-    parts = [f"{states['finished']} of {len(results.runs)} planned runs are finished"]
-    parts += [f"{states[state]} {state}" for state in ("failed", "missing", "damaged") if states[state]]
-    return ", ".join(parts) + "."
-
-
-def general_cautions(results: Results) -> list[str]:
-    """Return sentences on what a reader of any number in the report should know."""
-    cautions = []
-    everything = range(len(results.references))
-    lost = [run for run in results.runs if not run.finished]
-    if lost:
-        cautions.append(f"{state_sentence(results)} Every number is over the finished runs; the others are listed below.")
-    merged = [k for k in everything if not results.references[k].front.exact]
-    if merged:
-        cautions.append(
-            f"No exact front is at hand for {len(merged)} of {len(everything)} problems. There the merged non-dominated "
-            "front of all runs takes its place: ratios, IGD+ and shares found are then relative to the best that these runs "
-            "found together, which may be short of the optimum, and they change when runs are added."
-        )
-    exceeded = sum(reference.exceeded for reference in results.references)
-    if exceeded:
-        cautions.append(
-            f"On {exceeded} of {len(everything)} problems runs found points beyond the exact front, which is that of the "
-            "problem without what algorithms override of it (such as the representation); ratios above 1 come from this."
-        )
-    none = [k for k in everything if not len(results.references[k].front)]
-    if none:
-        cautions.append(f"On {len(none)} of {len(everything)} problems no legal path is known; all ratios are 0 there.")
-    if len(results.versions) > 1:
-        cautions.append("The runs were made with different versions of packages, see below.")
-    return cautions
+# What the names of sets of operators stand for.
+_OPERATORS = {
+    "paper": "those of Ahmed and Deb (2013)",
+    "scalarized": "path-aware, from scalarized paths",
+    "random": "path-aware, from random paths",
+}
 
 
-def settings_blocks(results: Results, times: bool) -> list[Block]:
-    """Return the tables of problems and algorithms."""
+def settings_blocks(results: Results, times: bool) -> Iterator[Block]:
+    """Yield what the runs have in common, the tables of problems and algorithms, and the study file if there is one."""
     plan = results.plan
     (kind, amount), *_ = plan.budget.items()
     seeds = sorted({run.seed for run in results.runs if not results.is_exact(run.algorithm)})
-    words = f"Budget of each run: {amount} {kind}. Seeds: {_seeds(seeds)}. Target: hypervolume ratio {results.target:g}."
+    yield Heading("Settings")
+    words = f"Budget of each run: {amount} {kind}. Seeds: {_ranges(seeds)}. Target: hypervolume ratio {results.target:g}."
+    if plan.reference is not None:
+        words += f" Search for each exact front: {_other(plan.reference)}."
+    yield Text(words)
+    yield _groups_table(results)
+    if len(plan.problems) > len(results.groups):
+        yield Fold("Each problem", (_problems_table(results),))
+    yield _references_table(results, times)
+    yield _algorithms_table(results)
+    if results.study_file is not None:
+        yield Fold("The study file", (Listing(results.study_file),))
+
+
+def _groups_table(results: Results) -> Table:
+    header = ["problems", "number", "grid", "query", "objectives", "representation", "obstacles"]
     rows = []
     for group, problems in results.groups.items():
-        spec = plan.problems[problems[0]].spec
-        row = [group, _grid(spec["grid"]), ", ".join(spec["objectives"]), _rules(spec), reference_phrase(results, problems)]
+        specs = [results.plan.problems[k].spec for k in problems]
+        queries = {_query(spec) for spec in specs}
+        query = queries.pop() if len(queries) == 1 else f"{len(queries)} different"
+        row = [group, str(len(problems)), _grids([results.plan.problems[k] for k in problems]), query]
+        rows.append([*row, ", ".join(specs[0]["objectives"]), _representation(specs[0]), _obstacles(specs[0])])
+    notes = ["A query goes from cell x,y to another, counted from 0,0 at the bottom left."]
+    if any("digest" in problem.spec["grid"] for problem in results.plan.problems):
+        notes.append(
+            "The digest of a map, of which the first digits stand here, is the SHA-256 of its size and cells, with its "
+            "obstacles grown by the robot's radius if there is one."
+        )
+    return Table("problems", "Problems.", header, rows, left=7, notes=notes, for_papers=False)
+
+
+def _references_table(results: Results, times: bool) -> Table:
+    header = ["problems", "measured against", "points of it", *["seconds of the exact search"] * times]
+    rows = []
+    for group, problems in results.groups.items():
         sizes = np.array([len(results.references[k].front) for k in problems])
-        row += [str(len(problems)), spread(quartiles(sizes), count)]
+        row = [group, reference_phrase(results, problems), spread(quartiles(sizes), count)]
         if times:
             seconds = np.array([results.references[k].seconds for k in problems])
             row.append(spread(quartiles(seconds[~np.isnan(seconds)]), significant))
         rows.append(row)
-    header = ["group", "grid", "objectives", "representation and obstacles", "measured against", "problems", "front points"]
-    header += ["seconds of the exact search"] if times else []
-    problems_table = Table("problems", "Problems; medians [quartiles].", header, rows, left=5, for_papers=False)
-    rows = [
-        [str(k + 1), algorithm.label, _described(algorithm.spec), _changes(results, algorithm)]
-        for k, algorithm in enumerate(plan.algorithms)
+    what = "Fronts that runs are measured against; of several problems, median [quartiles]."
+    return Table("references", what, header, rows, left=2, for_papers=False)
+
+
+def _problems_table(results: Results) -> Table:
+    rows = []
+    for problem, reference in zip(results.plan.problems[:_MOST_ROWS], results.references, strict=False):
+        spec, front = problem.spec, reference.front
+        rows.append([problem.label, _one_grid(problem), _query(spec), "exact" if front.exact else "merged", str(len(front))])
+    header = ["problem", "grid", "query", "front", "front points"]
+    left = len(results.plan.problems) - len(rows)
+    notes = [f"{left} more stand in problems.csv."] if left else []
+    return Table("each-problem", "Each problem.", header, rows, left=4, notes=notes, for_papers=False)
+
+
+def _algorithms_table(results: Results) -> Table:
+    header = ["#", "algorithm", "method", "population", "operators", "ties by turn", "other settings", "changes in problems"]
+    rows = []
+    firsts = [results.plan.problems[problems[0]].spec for problems in results.groups.values()]
+    for k, algorithm in enumerate(results.plan.algorithms):
+        spec = algorithm.spec
+        in_groups = zip(*(_in_problem(problem, algorithm) for problem in firsts), strict=True)
+        operators, ties, changes = (_by_group(list(results.groups), texts) for texts in in_groups)
+        method = spec["algorithm"] if "algorithm" in spec else f"{spec['preset']} (preset)"
+        population = str(spec.get("pop_size", NOTHING))
+        rows.append([str(k + 1), algorithm.label, method, population, operators, ties, _other(spec), changes])
+    notes = [
+        "Ties by turn: whether paths that are otherwise equal are told apart by their total turn. Parameters that are not "
+        "named have their defaults."
     ]
-    header = ["#", "algorithm", "what it is", "what it changes in problems"]
-    algorithms_table = Table("algorithms", "Algorithms.", header, rows, left=4, for_papers=False)
-    return [Heading("Settings"), Text(words), problems_table, algorithms_table]
+    return Table("algorithms", "Algorithms.", header, rows, left=8, notes=notes, for_papers=False)
 
 
-def unfinished_blocks(results: Results) -> list[Block]:
-    """Return lists of the runs that are not finished and of the problems without an exact front."""
-    blocks: list[Block] = []
-    lost = [run for run in results.runs if not run.finished]
-    if lost:
-        # Failed runs first, of which there is something to say.
-        lost.sort(key=lambda run: run.status != "failed")
-        rows = []
-        for run in lost[:_MOST_ROWS]:
-            names = [results.plan.problems[run.problem].label, results.algorithms[run.algorithm]]
-            rows.append([*names, str(run.seed), run.status, _cut(gist(run.message))])
-        header = ["problem", "algorithm", "seed", "state", "message"]
-        notes = [f"{len(lost) - len(rows)} more stand in runs.csv."] if len(lost) > len(rows) else []
-        caption = "Runs that are not finished."
-        blocks += [Heading("Unfinished runs"), Text(state_sentence(results))]
-        blocks.append(Table("unfinished", caption, header, rows, left=5, notes=notes, for_papers=False))
-    merged = [k for k, reference in enumerate(results.references) if not reference.front.exact]
-    if merged:
-        rows = [[results.plan.problems[k].label, _cut(results.references[k].reason)] for k in merged[:_MOST_ROWS]]
-        notes = [f"{len(merged) - len(rows)} more stand in problems.csv."] if len(merged) > len(rows) else []
-        caption = "Problems whose runs are measured against the merged front of all runs."
-        blocks.append(Heading("Problems without an exact front"))
-        blocks.append(Table("merged", caption, ["problem", "why"], rows, left=2, notes=notes, for_papers=False))
-    return blocks
+def _in_problem(problem: dict[str, Any], algorithm: PlannedAlgorithm) -> tuple[str, str, str]:
+    """Return the operators of an algorithm on a problem, whether it breaks ties by turn, and what it changes in it."""
+    changed, settled = resolve(problem, algorithm.spec, algorithm.overrides)
+    changes = _listed({key: value for key, value in changed.items() if value != problem.get(key)}) or NOTHING
+    if "preset" in settled:
+        # As `ahmed_deb_2013` has it.
+        return _OPERATORS["paper"], "yes" if len(problem["objectives"]) == 2 else "no", changes
+    if settled["algorithm"] == "exact":
+        return NOTHING, NOTHING, changes
+    given = dict(algorithm.spec["operators"])
+    base = given.pop("base")
+    if base == "default":
+        _, plain = resolve(problem, {**algorithm.spec, "operators": {"base": base}}, algorithm.overrides)
+        base = "paper" if plain["operators"]["sampling"]["class"] == "RandomSampling" else "scalarized"
+    words = _OPERATORS[base] if "crossover" in settled["operators"] else f"sampling and repair {_OPERATORS[base]}"
+    for slot, single in given.items():
+        arguments = _listed({key: value for key, value in single.items() if key != "class"})
+        words += f"; {slot.replace('_', ' ')} {single['class']}{f' ({arguments})' if arguments else ''}"
+    return words, "yes" if settled["smoothness"] else "no", changes
 
 
-def definition_blocks(results: Results, times: bool) -> list[Block]:
-    """Return how each measure and test is defined."""
-    sentences = [
-        "Hypervolume ratio: the hypervolume of a run's legal non-dominated points over that of the front it is measured "
-        "against. Objectives are normalised by that front's range; the reference point lies a tenth of the range beyond its "
-        "nadir. An objective in which the front has no range counts in its own unit. Where the front is a single point, a "
-        "run that reaches it has 1 and any other 0. Without a legal path the ratio is 0.",
-        "IGD+: the mean distance, in the same normalised objectives, by which points of the front are missed (Ishibuchi and "
-        "others, 2015); 0 is best, infinite without a legal path.",
-        f"Front found: the share of the front's points that are among the run's, equal within {SAME:g} of the objective's "
-        "largest size.",
-        "Mean turn: the mean total turn, in degrees, of the paths of the final front, the one that turns least for each of its "
-        "points; infinite without a legal path. It tells how smooth paths are where turn is no objective.",
-        "Feasible: the share of finished runs that end with a legal path.",
-        "Budget: runs end with the generation in which the budget is reached, so that evaluations may exceed it by up to one "
-        "generation.",
-        "To target: what a run had spent at the first stored record of its history whose ratio is at least "
-        f"{results.target:g}. Histories keep up to about a hundred records a run, so that this is late by at most the step "
-        "between two. A run that did not reach it counts as infinite in medians and quartiles.",
-        "Quartiles are interpolated linearly between the ordered values. Those of a group are over all its finished runs.",
-        "One problem: Mann-Whitney U tests over the runs of two algorithms, with the effect size A12 of Vargha and Delaney "
-        "(2000). Several problems: Wilcoxon signed-rank tests over the problems' medians, zeros left out, with the "
-        "matched-pairs rank-biserial correlation (Kerby, 2014). Both are two-sided and exact for the ties at hand, but for "
-        "large samples, where the normal approximation serves. p values are corrected by Holm's method (1979) for all pairs "
-        "of a table. Values are rounded to nine decimals. The level is 0.05.",
-        "Average ranks, of three algorithms or more on several problems: Friedman's test over the problems' medians, and "
-        "Nemenyi's critical difference at 0.05 (Demsar, 2006). The p value of Friedman's test is the chi-square "
-        "approximation, which is rough for few problems.",
-        "The exact front draws no random number, has one run a problem, and is not part of the tests.",
-    ]
-    if times:
-        sentences.append("Seconds are wall time of single runs, and depend on the machine and on what else it did.")
-    return [Heading("Definitions"), *(Text(sentence) for sentence in sentences)]
+def _other(spec: Mapping[str, Any]) -> str:
+    """Return the settings of an algorithm that have no column of their own."""
+    limits = [(spec.get("max_seconds"), "seconds"), (spec.get("max_labels"), "labels")]
+    words = [f"at most {most:g} {unit}" for most, unit in limits if most is not None]
+    return "; ".join([*words, *filter(None, [_listed(spec.get("parameters", {}))])]) or NOTHING
 
 
-def origin_blocks(results: Results) -> list[Block]:
-    """Return the machines and versions that the runs were made with."""
-    blocks: list[Block] = [Heading("Machines and versions")]
-    for name, origins in (("machine", results.machines), ("versions", results.versions)):
-        rows = [[_described(json.loads(text)), str(number)] for text, number in sorted(origins.items())]
-        caption = f"{'Machines' if name == 'machine' else 'Versions'}, and how many runs were made with each."
-        blocks.append(Table(name, caption, [name, "runs"], rows, for_papers=False))
-    return blocks
+def _by_group(groups: Sequence[str], texts: Sequence[str]) -> str:
+    """Return a text that may differ between groups, with the groups' names where it does."""
+    found: dict[str, list[str]] = {}
+    for group, text in zip(groups, texts, strict=True):
+        found.setdefault(text, []).append(group)
+    if len(found) == 1:
+        return texts[0]
+    return "; ".join(f"{'nothing' if text == NOTHING else text} on {', '.join(names)}" for text, names in found.items())
 
 
-def _seeds(seeds: Sequence[int]) -> str:
-    """Return whole numbers as ranges, ``1 to 11, 15``."""
+def _grids(problems: Sequence[PlannedProblem]) -> str:
+    """Return what the grids of a group are; they are of one random family, or one map."""
+    first = problems[0]
+    if "random" not in first.spec["grid"]:
+        return _one_grid(first)
+    seeds = _ranges(sorted(problem.spec["grid"]["random"]["seed"] for problem in problems))
+    return f"{_one_grid(first).rsplit(', seed', 1)[0]}, seed{'s' * (len(problems) > 1)} {seeds}"
+
+
+def _one_grid(problem: PlannedProblem) -> str:
+    grid = problem.spec["grid"]
+    if "random" in grid:
+        family = grid["random"]
+        size, p0 = family["size"], family["p0"]
+        rule = "" if family["corner_cutting"] else ", no corner cutting"
+        return f"random, {size} x {size} cells, p0 = {p0:g}{rule}, seed {family['seed']}"
+    rule = "" if grid["corner_cutting"] else ", no corner cutting"
+    return f"{problem.source or 'map'}, {grid['width']} x {grid['height']} cells{rule}, digest {grid['digest'][:8]}"
+
+
+def _representation(spec: Mapping[str, Any]) -> str:
+    return spec["representation"] if spec["axis"] == "auto" else f"{spec['representation']} along {spec['axis']}"
+
+
+def _obstacles(spec: Mapping[str, Any]) -> str:
+    """Return how obstacles are treated, with the numbers that belong to it."""
+    limit = "" if spec["potential_limit"] is None else f" {spec['potential_limit']:g}"
+    penalty = "" if spec["penalty"] is None else f"{spec['penalty']:g} a cell"
+    if spec["obstacles"] == "penalty":
+        return f"penalty of {penalty}"
+    return f"{spec['obstacles']}{limit}{f', penalty of {penalty}' if penalty else ''}"
+
+
+def _query(spec: Mapping[str, Any]) -> str:
+    (x, y), (u, v) = spec["start"], spec["goal"]
+    return f"{x},{y} to {u},{v}"
+
+
+def _ranges(numbers: Sequence[int]) -> str:
+    """Return ascending whole numbers as ranges, ``1 to 11, 15``."""
     parts: list[list[int]] = []
-    for seed in seeds:
-        if parts and seed == parts[-1][-1] + 1:
-            parts[-1].append(seed)
+    for number in numbers:
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1].append(number)
         else:
-            parts.append([seed])
+            parts.append([number])
     return ", ".join(str(part[0]) if len(part) == 1 else f"{part[0]} to {part[-1]}" for part in parts) or "none"
 
 
-def _grid(spec: dict[str, Any]) -> str:
-    if "random" in spec:
-        grid = spec["random"]
-        cutting = grid["corner_cutting"]
-        text = f"random, {grid['size']} x {grid['size']} cells, {grid['p0']:g} occupied"
-    else:
-        cutting = spec["corner_cutting"]
-        text = f"map, {spec['width']} x {spec['height']} cells"
-    return text if cutting else f"{text}, no corner cutting"
-
-
-def _rules(spec: dict[str, Any]) -> str:
-    text = f"{spec['representation']}, {spec['obstacles']}"
-    if spec["obstacles"] == "penalty" and spec.get("penalty") is not None:
-        text += f" {spec['penalty']:g}"
-    if spec["obstacles"] == "limit" and spec.get("potential_limit") is not None:
-        text += f" {spec['potential_limit']:g}"
-    return text
-
-
-def _changes(results: Results, algorithm: PlannedAlgorithm) -> str:
-    """Return what an algorithm changes in the problems that it solves, and in which groups if not in all."""
-    found: dict[str, list[str]] = {}
-    for group, problems in results.groups.items():
-        spec = results.plan.problems[problems[0]].spec
-        changed, _ = resolve(spec, algorithm.spec, algorithm.overrides)
-        text = _described({key: value for key, value in changed.items() if value != spec.get(key)}) or "nothing"
-        found.setdefault(text, []).append(group)
-    if len(found) == 1:
-        return next(iter(found))
-    return "; ".join(f"{text} on {', '.join(groups)}" for text, groups in found.items())
-
-
-def _described(spec: dict[str, Any]) -> str:
-    """Return settings in one line, ``algorithm NSGA2; pop_size 200``."""
+def _listed(settings: Mapping[str, Any]) -> str:
+    """Return settings in one line, ``penalty 1; representation cells``."""
     parts = []
-    for key, value in spec.items():
-        if value is None or value == {}:
-            continue
-        parts.append(f"{key} {value if isinstance(value, str) else json.dumps(value, sort_keys=True)}")
+    for key, value in settings.items():
+        shown = f"{value:g}" if isinstance(value, float) else "none" if value is None else str(value)
+        parts.append(f"{key} {shown}")
     return "; ".join(parts)
-
-
-def _cut(text: str, most: int = 200) -> str:
-    return text if len(text) <= most else f"{text[: most - 1]}…"

@@ -9,7 +9,8 @@ import numpy as np
 from pymoo_gridpath.study.report.comparisons import TESTED, Comparison
 from pymoo_gridpath.study.report.measures import quartiles
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.report.tables import NOTHING, Table, count, percent, probability, ratio, significant, spread
+from pymoo_gridpath.study.report.statistics import ALPHA
+from pymoo_gridpath.study.report.tables import NOTHING, Table, count, percent, probability, ratio, signed, significant, spread
 
 
 def reference_phrase(results: Results, problems: Sequence[int]) -> str:
@@ -27,7 +28,8 @@ def reference_phrase(results: Results, problems: Sequence[int]) -> str:
 
 def quality_table(results: Results, problems: Sequence[int], name: str, place: str, comparison: Comparison) -> Table:
     """Return how good the final fronts of each algorithm are, and than which others its ratio is significantly better."""
-    header = ["#", "algorithm", "finished", "feasible", "hypervolume ratio", "IGD+", "front found", "mean turn", "better than"]
+    header = ["#", "algorithm", "finished", "feasible", "hypervolume ratio", "IGD+", "front found", "mean turn (degrees)"]
+    header.append("better than")
     rows = []
     for k, label in enumerate(results.algorithms):
         runs = results.finished(k, problems)
@@ -55,7 +57,7 @@ def effort_table(results: Results, problems: Sequence[int], name: str, place: st
         cells += [spread(quartiles(results.values(measure, k, problems)), show) for measure, show in columns]
         rows.append(cells)
     against = reference_phrase(results, problems)
-    what = f"Effort {place} until the hypervolume ratio to {against} first reaches {results.target:g}."
+    what = f"Effort {place} until the hypervolume ratio first reaches {results.target:g}, the target. Ratios are to {against}."
     note = (
         "Median [quartiles] over all finished runs; one that did not reach the target counts as infinite (∞). "
         "The evaluations to the target are those of the first stored record that reaches it."
@@ -75,15 +77,15 @@ def pairs_table(results: Results, comparison: Comparison, name: str, place: str)
             cells += [str(pair.n_first), str(pair.n_second)]
         else:
             cells += [str(pair.n_first), f"{pair.better} / {pair.equal} / {pair.worse}"]
-        cells += [f"{pair.statistic:g}", probability(pair.p), probability(pair.p_holm), f"{pair.effect:.3f}"]
+        cells += [f"{pair.statistic:g}", probability(pair.p), probability(pair.p_holm), signed(pair.effect)]
         rows.append([*cells, "yes" if pair.significant else "no"])
     if over_seeds:
-        header = ["first", "second", "runs", "runs", "U", "p", "p (Holm)", "A12", "significant"]
+        header = ["first", "second", "runs of first", "runs of second", "U", "p", "p (Holm)", "A12", "significant"]
         what = f"Mann-Whitney U tests of the {measure} {place}, over runs."
         note = "A12 is the chance that a run of the first algorithm is better than one of the second; 0.5 is no difference."
     else:
         header = ["first", "second", "problems", "better / equal / worse", "W", "p", "p (Holm)", "effect", "significant"]
-        what = f"Wilcoxon signed-rank tests of the median {measure} of each problem {place}."
+        what = f"Wilcoxon signed-rank tests of the {measure} {place}, over the medians of problems."
         note = "The effect is the matched-pairs rank-biserial correlation: 1 if the first is better wherever they differ."
     if not comparison.could_tell:
         header = header[:-1]
@@ -102,7 +104,7 @@ def each_table(results: Results, each: Sequence[Comparison], name: str, place: s
         counts[2] += pair.significant and pair.effect < 0.5
     header = ["first", "second", "problems", "first better on", "second better on"]
     rows = [[labels[i], labels[j], *map(str, found[i, j])] for i, j in sorted(found)]
-    what = f"Problems {place} on which the {measure} of one algorithm's runs is significantly better."
+    what = f"Tests of single problems {place}: on how many one algorithm's {measure} is significantly better."
     note = "Mann-Whitney U tests over the runs of each problem, with one correction by Holm for all problems and pairs; "
     note += "single p values and effect sizes stand in tests.csv."
     return Table(f"{name}-each-{each[0].measure.replace('_', '-')}", what, header, rows, left=2, notes=[note])
@@ -114,7 +116,7 @@ def ranks_table(results: Results, comparison: Comparison, name: str, place: str)
     ranks = comparison.friedman.ranks
     rows = [[results.algorithms[comparison.algorithms[k]], f"{ranks[k]:.3f}"] for k in np.argsort(ranks, kind="stable")]
     measure = TESTED[comparison.measure][0]
-    what = f"Average ranks by the median {measure} over {comparison.n_blocks} problems {place}, 1 the best."
+    what = f"Average ranks {place} by the median {measure} of each of {comparison.n_blocks} problems, 1 the best."
     return Table(
         f"{name}-ranks-{comparison.measure.replace('_', '-')}",
         what,
@@ -130,8 +132,8 @@ def friedman_sentence(comparison: Comparison) -> str:
     outcome, k = comparison.friedman, len(comparison.algorithms)
     difference = f"Nemenyi's critical difference at 0.05 is {outcome.critical_difference:.3f}."
     p = probability(outcome.p)
-    p = "p < 0.001" if p.startswith("<") else f"p = {p}"
-    verdict = "" if outcome.p < 0.05 else " The ranks do not differ significantly."
+    p = f"p < {p[1:]}" if p.startswith("<") else f"p = {p}"
+    verdict = "" if outcome.p < ALPHA else " The ranks do not differ significantly."
     return f"Friedman's test: chi-square {outcome.statistic:.3f} with {k - 1} degrees of freedom, {p}.{verdict} {difference}"
 
 
@@ -166,11 +168,11 @@ def _explain_better(comparison: Comparison) -> str:
     if not comparison.pairs:
         return "There are no two algorithms with finished runs to compare."
     if not comparison.could_tell:
-        return "No test could tell the algorithms apart with so few values, whatever these were."
+        if comparison.over == "problems":
+            return "With so few problems, no test of the medians of two algorithms could be significant; see below."
+        return "With so few runs, no test of two algorithms could be significant; see below."
     test = "Mann-Whitney, over runs" if comparison.over == "seeds" else "Wilcoxon signed-rank, over the medians of problems"
-    return (
-        f"'Better than' gives the numbers (#) of algorithms with a significantly lower hypervolume ratio ({test}, Holm, 0.05)."
-    )
+    return f"The last column gives the numbers (#) of the algorithms with a significantly lower ratio ({test}, Holm, 0.05)."
 
 
 def _incomplete(results: Results, problems: Sequence[int]) -> list[str]:

@@ -7,11 +7,17 @@ import html
 import io
 import math
 import re
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 #: What a cell shows where there is no number: a dash.
 NOTHING = "\N{EN DASH}"
+
+MINUS = "\N{MINUS SIGN}"
+
+# Letters that LaTeX joins into others where they follow one another, such as two hyphens into a dash.
+_JOINED = re.compile(r"(?<=[-'`,!?])(?=[-'`,])")
 
 _LATEX = {
     "\\": r"\textbackslash{}",
@@ -29,8 +35,15 @@ _LATEX = {
     "|": r"\textbar{}",
     '"': r"\textquotedbl{}",
     "∞": r"$\infty$",
-    NOTHING: "--",
+    NOTHING: r"\textendash{}",
+    MINUS: "$-$",
 }
+
+#: What tables in LaTeX need: a command that makes what is too wide for the page as narrow as that.
+LATEX_HEAD = r"""% Tables for \input{tables.tex}. They need \usepackage{booktabs,graphicx} and \usepackage[T1]{fontenc}.
+% Letters of other scripts need XeLaTeX or LuaLaTeX.
+\providecommand{\fitline}[1]{\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{#1}}
+"""
 
 
 @dataclass(frozen=True)
@@ -68,20 +81,21 @@ class Table:
         return "\n".join([f"**{escape_markdown(self.caption)}**\n", *lines, *notes]) + "\n"
 
     def latex(self) -> str:
-        """Return the table in LaTeX, for the package booktabs."""
+        """Return the table in LaTeX, for the package booktabs and the command of `LATEX_HEAD`."""
         columns = "l" * self.left + "r" * (len(self.header) - self.left)
+        header = [_latex_header(text, column) for text, column in zip(self.header, columns, strict=True)]
         lines = [
             r"\begin{table}[htbp]",
-            r"  \centering\small",
+            r"  \centering\footnotesize\setlength{\tabcolsep}{4pt}",
             f"  \\caption{{{escape_latex(' '.join([self.caption, *self.notes]))}}}",
-            f"  \\label{{tab:{self.name}}}",
-            f"  \\begin{{tabular}}{{{columns}}}",
+            f"  \\label{{tab:{self.name}}}\\smallskip",
+            f"  \\fitline{{\\begin{{tabular}}{{{columns}}}",
             r"    \toprule",
-            f"    {_latex_row(self.header)}",
+            f"    {_latex_row(header)}",
             r"    \midrule",
-            *(f"    {_latex_row(row)}" for row in self.rows),
+            *(f"    {_latex_row([escape_latex(cell) for cell in row])}" for row in self.rows),
             r"    \bottomrule",
-            r"  \end{tabular}",
+            r"  \end{tabular}}",
             r"\end{table}",
         ]
         return "\n".join(lines) + "\n"
@@ -116,8 +130,9 @@ def escape_markdown(text: str) -> str:
 
 
 def escape_latex(text: str) -> str:
-    """Return a text in which LaTeX sees no commands."""
-    return "".join(_LATEX.get(letter, letter) for letter in " ".join(text.splitlines()))
+    """Return a text in which LaTeX sees no commands, and joins no letters."""
+    parts = _JOINED.split(" ".join(text.splitlines()))
+    return "{}".join("".join(_LATEX.get(letter, letter) for letter in part) for part in parts)
 
 
 def _markdown_row(cells: Sequence[str]) -> str:
@@ -125,9 +140,21 @@ def _markdown_row(cells: Sequence[str]) -> str:
 
 
 def _latex_row(cells: Sequence[str]) -> str:
-    row = " & ".join(escape_latex(cell) for cell in cells)
-    # The command at the end of the line before, \\ or \midrule, would take these for its argument.
-    return re.sub(r"^\s*([\[*])", r"{\1}", row) + r" \\"
+    """Return a row of cells that are in LaTeX already."""
+    return _no_argument(" & ".join(cells)) + r" \\"
+
+
+def _latex_header(text: str, side: str) -> str:
+    """Return a text as the head of a column that is set to the left or right, in several lines if it is long."""
+    lines = [_no_argument(escape_latex(line)) for line in textwrap.wrap(text, 13, break_long_words=False)]
+    if len(lines) < 2:
+        return escape_latex(text)
+    return "\\begin{tabular}[b]{@{}" + side + "@{}}" + r"\\".join(lines) + r"\end{tabular}"
+
+
+def _no_argument(line: str) -> str:
+    """Return a line that the command at the end of the one before, \\\\ or \\midrule, does not take for its argument."""
+    return re.sub(r"^\s*([\[*])", r"{\1}", line)
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence]) -> str:
@@ -183,8 +210,14 @@ def significant(value: float) -> str:
 
 
 def probability(value: float) -> str:
-    """Return a p value with three decimals."""
-    return _special(value) or ("<0.001" if value < 0.001 else f"{value:.3f}")
+    """Return a p value with three decimals; what is below 0.05 is never shown as 0.050."""
+    shown = _special(value) or ("<0.001" if value < 0.001 else f"{value:.3f}")
+    return "<0.050" if shown == "0.050" and value < 0.05 else shown
+
+
+def signed(value: float) -> str:
+    """Return an effect size with three decimals and, if it is negative, a minus sign rather than a hyphen."""
+    return _special(value) or f"{value:.3f}".replace("-", MINUS)
 
 
 def spread(quartiles: Iterable[float], show: Callable[[float], str]) -> str:
