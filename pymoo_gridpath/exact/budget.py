@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -50,7 +51,7 @@ class Budget:
     max_memory : int, optional
         Bytes of the arrays of the search; by default 70 % of what the machine has free when it begins.
     watch : callable, optional
-        Called now and then with the `Meter`; if it returns True, the search ends.
+        Called now and then with the `Meter`, not always from the same thread; if it returns True, the search ends.
 
     Raises
     ------
@@ -95,6 +96,7 @@ class Meter:
         self.watch = budget.watch
         self.message = ""
         self.n_fixed = self.n_labels = self.n_bytes = 0
+        self._asking = threading.Lock()
 
     @property
     def elapsed(self) -> float:
@@ -121,8 +123,10 @@ class Meter:
 
     def stop(self) -> bool:
         """Set `message` if the time is used up or who watches wants an end; return whether it is set."""
-        if self.elapsed >= self.seconds:
-            self.message = f"the time budget of {self.seconds:g} s is used up"
-        elif self.watch is not None and self.watch(self):
-            self.message = "stopped by who watched it"
+        # Searches that go on side by side ask in turn.
+        with self._asking:
+            if self.elapsed >= self.seconds:
+                self.message = f"the time budget of {self.seconds:g} s is used up"
+            elif self.watch is not None and not self.message and self.watch(self):
+                self.message = "stopped by who watched it"
         return bool(self.message)

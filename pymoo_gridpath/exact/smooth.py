@@ -107,25 +107,27 @@ def _spent(closed, place, width, heading_of, step, field):
 
 
 @kernel
-def _parent(label, m, cell, spent, first, legal, offsets, step, field):
-    """Return the label from which a step along heading m leads to a label at its costs, -1 if there is none."""
-    before = cell[label] - offsets[m]
-    if before < 0 or before >= len(legal) or not (legal[before] >> m) & 1:
-        return -1
-    cost1 = step[0, 8, m] + field[0, cell[label]]
-    cost2 = step[1, 8, m] + field[1, cell[label]]
-    wanted = spent[label, 0] - cost1
-    low = first[before]
-    high = first[before + 1]
-    while low < high:
-        middle = (low + high) >> 1
-        if spent[middle, 0] < wanted:
-            low = middle + 1
-        else:
-            high = middle
-    if low == first[before + 1] or spent[low, 0] != wanted or spent[low, 1] != spent[label, 1] - cost2:
-        return -1
-    return low
+def _find_parents(label, cell, spent, first, legal, offsets, step, field, parents):
+    """Fill in the label from which a step along each heading leads to a label at its costs, -1 if there is none."""
+    here = cell[label]
+    for m in range(8):
+        parents[m] = -1
+        before = here - offsets[m]
+        if before < 0 or before >= len(legal) or not (legal[before] >> m) & 1:
+            continue
+        wanted = spent[label, 0] - step[0, 8, m] - field[0, here]
+        low = first[before]
+        high = first[before + 1]
+        while low < high:
+            middle = (low + high) >> 1
+            if spent[middle, 0] < wanted:
+                low = middle + 1
+            else:
+                high = middle
+        if low == first[before + 1] or spent[low, 0] != wanted:
+            continue
+        if spent[low, 1] == spent[label, 1] - step[1, 8, m] - field[1, here]:
+            parents[m] = low
 
 
 @kernel
@@ -153,13 +155,16 @@ def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field
                 labels = _doubled(labels)
             if i == len(parents):
                 parents = _doubled(parents)
+            _find_parents(labels[i], cell, spent, first, legal, offsets, step, field, parents[i])
             for m in range(8):
-                parent = _parent(labels[i], m, cell, spent, first, legal, offsets, step, field)
-                if parent >= 0 and slot[parent] < 0:
+                parent = parents[i, m]
+                if parent < 0:
+                    continue
+                if slot[parent] < 0:
                     slot[parent] = n
                     labels[n] = parent
                     n += 1
-                parents[i, m] = slot[parent] if parent >= 0 else -1
+                parents[i, m] = slot[parent]
             i += 1
     return labels[:n].copy(), parents[:n].copy(), n_ends
 

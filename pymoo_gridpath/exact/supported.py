@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import heapq
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
 
-from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
+
+# Searches that are made side by side, whatever the machine, so that results are the same; in threads, which compiled kernels
+# let run, where a search takes long enough.
+_SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**14
 
 
 class Hull(NamedTuple):
@@ -61,9 +66,21 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     Y. P. Aneja and K. P. K. Nair, "Bicriteria transportation problem", Management Science 25(1), 1979 (weights normal to the
     gap between two points).
     """
-    searches = [
-        backward_costs(moves, *_pair(costs, order), goal, costs.with_heading, stop=meter.stop) for order in ((0, 1), (1, 0))
-    ]
+    if not COMPILED or moves.n_cells < _CELLS_WORTH_THREADS:
+        return _supported_points(moves, costs, start, goal, n_weights, meter, map)
+    with ThreadPoolExecutor(_SIDE_BY_SIDE) as threads:
+        return _supported_points(moves, costs, start, goal, n_weights, meter, threads.map)
+
+
+def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, map_) -> Hull:
+    def from_end(order):
+        return backward_costs(moves, *_pair(costs, order), goal, costs.with_heading, stop=meter.stop)
+
+    def minimise(gap):
+        _, low, high, _ = gap
+        return _minimise(moves, costs, _normal(low, high), start, goal, spent, (high[0], low[1]), meter)
+
+    searches = list(map_(from_end, ((0, 1), (1, 0))))
     bounds = np.stack([search[0] for search, _ in searches])
     if meter.message:
         return Hull(bounds, np.empty((0, 2), dtype=np.int64), [], *_no_weights(bounds))
@@ -74,28 +91,30 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     del searches
     n_weights = _affordable(n_weights, bounds, meter)
     weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
-    spent = _spent(moves, costs, start, meter)
+    spent = np.stack(list(map_(lambda k: _spent(moves, costs, k, start, meter), range(2))))
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
     found, used = {left: first, right: last}, []
     # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
     gaps, narrow = [(0.0, left, right, 0)] if left != right else [], []
     while gaps and len(used) < n_weights:
-        _, low, high, _ = gaps[0]
-        weights = _normal(low, high)
         meter.check()
-        least = None if meter.message else _minimise(moves, costs, weights, start, goal, spent, (high[0], low[1]), meter)
-        if least is None:
+        if meter.message:
             break
-        heapq.heappop(gaps)
-        (sums, point, path), column = least, len(used)
-        used.append(weights)
-        weighted[:, column] = _rounded_down(sums)
-        if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
-            found[point] = path
-            for a, b in ((low, point), (point, high)):
-                heapq.heappush(gaps, (-max((b[0] - a[0]) / extent[0], (a[1] - b[1]) / extent[1]), a, b, column))
-        else:
-            narrow.append((low, column))
+        widest = [heapq.heappop(gaps) for _ in range(min(_SIDE_BY_SIDE, len(gaps), n_weights - len(used)))]
+        for gap, least in zip(widest, list(map_(minimise, widest)), strict=True):
+            if least is None:
+                heapq.heappush(gaps, gap)
+                continue
+            (sums, point, path), column = least, len(used)
+            _, low, high, _ = gap
+            used.append(_normal(low, high))
+            weighted[:, column] = _rounded_down(sums)
+            if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
+                found[point] = path
+                for a, b in ((low, point), (point, high)):
+                    heapq.heappush(gaps, (-max((b[0] - a[0]) / extent[0], (a[1] - b[1]) / extent[1]), a, b, column))
+            else:
+                narrow.append((low, column))
     narrow += [(low, column) for _, low, _, column in gaps]
     points = sorted(found)
     paths = [found[point] for point in points]
@@ -118,8 +137,8 @@ def _rounded_down(sums: np.ndarray) -> np.ndarray:
 def _affordable(n_weights: int, bounds: np.ndarray, meter: Meter) -> int:
     """Return how many weighted sums there is memory for, and note what arrays of the size of the grid take."""
     n_states = bounds.shape[1]
-    # Bounds, a search under way with its costs, and the states of the label search.
-    base = n_states * (bounds.itemsize * 2 + 17 + 32 + 40)
+    # Bounds, the searches under way with their costs, and the states of the label search.
+    base = n_states * (bounds.itemsize * 2 + (17 + 32) * _SIDE_BY_SIDE + 40)
     n_weights = max(0, min(n_weights, int((meter.memory / 2 - base) // (4 * n_states))))
     meter.n_fixed = base + 4 * n_states * max(n_weights, 1)
     return n_weights
@@ -192,16 +211,13 @@ def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent:
     return found[0][0], point, path
 
 
-def _spent(moves: Moves, costs: Costs, start: int, meter: Meter) -> np.ndarray:
-    """Return lower bounds of both costs from the start to each cell, int64, shape (2, n_cells)."""
-    least = np.broadcast_to(costs.step.min(axis=1, keepdims=True), costs.step.shape)
-    back = moves.backward()
-    spent = np.empty_like(costs.field)
-    for k in range(2):
-        # The search enters the start instead of the cell that it set out from.
-        ahead = backward_costs(back, np.stack([least[k]] * 2), np.stack([costs.field[k]] * 2), start, stop=meter.stop)[0][0]
-        spent[k] = np.minimum(ahead + costs.field[k] - costs.field[k, start], UNREACHABLE)
-        spent[k, start] = 0
+def _spent(moves: Moves, costs: Costs, k: int, start: int, meter: Meter) -> np.ndarray:
+    """Return lower bounds of one of the costs from the start to each cell, int64, shape (n_cells,)."""
+    step = np.broadcast_to(costs.step[k].min(axis=0), (2, *costs.step.shape[1:])).copy()
+    # The search enters the start instead of the cell that it set out from.
+    ahead = backward_costs(moves.backward(), step, np.stack([costs.field[k]] * 2), start, stop=meter.stop)[0][0]
+    spent = np.minimum(ahead + costs.field[k] - costs.field[k, start], UNREACHABLE)
+    spent[start] = 0
     return spent
 
 

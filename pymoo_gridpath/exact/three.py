@@ -7,7 +7,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.exact.two import CLOSED_FULL, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, direct_headings, grow, trace
+from pymoo_gridpath.exact.two import CLOSED_FULL, DIRECT, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow, trace
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
 # Places in the array of counts.
@@ -98,7 +98,7 @@ class _Search:
                 self.costs.step,
                 self.costs.field,
                 self.costs.with_heading,
-                direct_headings(),
+                DIRECT,
                 self.bounds,
                 self.start,
                 self.goal,
@@ -262,7 +262,7 @@ def search_three(
     step, field, with_heading
         See `Costs`.
     direct : int64, shape (8, 8)
-        See `direct_headings`.
+        See `DIRECT`.
     bounds : int64, shape (n_states, 3)
         Lower bounds of the rest.
     start, goal : int

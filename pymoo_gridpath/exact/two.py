@@ -63,15 +63,15 @@ class Front(NamedTuple):
     points: np.ndarray
 
 
-def direct_headings() -> np.ndarray:
-    """Return the heading of the one step that does what two do, int64, shape (8, 8).
-
-    8 where the second step leads back, -1 where no single step does.
-    """
+def _direct_headings() -> np.ndarray:
     known = {(int(dx), int(dy)): m for m, (dx, dy) in enumerate(HEADINGS)}
     known[0, 0] = 8
     sums = HEADINGS[:, None] + HEADINGS[None, :]
     return np.array([[known.get((int(dx), int(dy)), -1) for dx, dy in row] for row in sums], dtype=np.int64)
+
+
+#: The heading of the one step that does what two do; 8 where the second step leads back, -1 where no single step does.
+DIRECT = _direct_headings()
 
 
 def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
@@ -173,7 +173,7 @@ class _Search:
                 self.moves.offsets,
                 self.costs.step,
                 self.costs.with_heading,
-                direct_headings(),
+                DIRECT,
                 self.states,
                 self.goal,
                 self.hull.weights,
@@ -262,15 +262,18 @@ def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
 
 
 @kernel
-def promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, gap):
-    """Whether a label can end below the staircase of known points in one of the gaps from ``gap`` on."""
+def first_promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, gap):
+    """Return the first gap, from ``gap`` on, in which a label can end below the staircase of known points, or -1.
+
+    What is reached from it can end in none before that.
+    """
     for j in range(gap, len(weights)):
         if f2 >= marks[j, 1]:
             # Nor does it stay below the corners of the gaps behind, which lie lower.
-            return False
+            return -1
         if f1 < marks[j, 0] and weights[j, 0] * g1 + weights[j, 1] * g2 + weighted[state, column[j]] < ceilings[j]:
-            return True
-    return False
+            return j
+    return -1
 
 
 @kernel
@@ -332,7 +335,7 @@ def search_two(
         See `Costs`.
     with_heading : bool
     direct : int64, shape (8, 8)
-        See `direct_headings`.
+        See `DIRECT`.
     states : int64, shape (n_cells, 5), or (8 * n_cells, 5) with headings
         Least g2 of the closed labels, lower bounds of the rest in both objectives, costs of the cell in both.
     goal : int
@@ -391,7 +394,8 @@ def search_two(
         if counts[NEXT_CORNER] < len(corners) and corners[counts[NEXT_CORNER], 0] <= f1:
             lower_marks(corners, weights, ceilings, marks, counts, f1)
             gap = counts[GAP]
-        if not promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, gap):
+        from_gap = first_promising(f1, f2, g1, g2, state, weighted, column, weights, ceilings, marks, gap)
+        if from_gap < 0:
             continue
         if with_heading:
             # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
@@ -435,7 +439,10 @@ def search_two(
             next_f1 = next1 + states[next_state, BOUND1]
             if next_f1 >= 2**61:
                 continue
-            if promising(next_f1, next_f2, next1, next2, next_state, weighted, column, weights, ceilings, marks, gap):
+            next_gap = first_promising(
+                next_f1, next_f2, next1, next2, next_state, weighted, column, weights, ceilings, marks, from_gap
+            )
+            if next_gap >= 0:
                 push(heap, n, next_f1, 2 * next_f2 + (next_cell == goal), (8 * next_cell + m) << 32 | n_closed)
                 n += 1
         n_closed += 1

@@ -381,6 +381,18 @@ def test_kernels_give_the_same_bits_compiled_and_plain(without):
     assert plain[1:] == compiled[1:]
 
 
+def test_threads_change_nothing(monkeypatch):
+    for objectives in (TWO, ("length", "turn")):
+        problem = GridPathProblem(random_grid(48, 3), (0, 0), (47, 47), objectives=objectives, representation="cells")
+        plain = exact_front(problem)
+        with monkeypatch.context() as changed:
+            changed.setattr("pymoo_gridpath.exact.supported._CELLS_WORTH_THREADS", 0)
+            threaded = exact_front(problem)
+        np.testing.assert_array_equal(threaded.X, plain.X)
+        np.testing.assert_array_equal(threaded.F, plain.F)
+        assert threaded.n_labels == plain.n_labels and len(plain.F) > 3
+
+
 def test_dense_scenarios_have_a_front_of_few_paths():
     # With p0 = 1 only the cells of one path are free.
     for seed in range(5):
