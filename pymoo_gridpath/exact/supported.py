@@ -15,7 +15,7 @@ from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
 # Searches that are made side by side, whatever the machine, so that results are the same; in threads, which compiled kernels
 # let run, where a search takes long enough.
-_SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**14
+_SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**16
 
 
 class Hull(NamedTuple):
