@@ -218,7 +218,7 @@ def overhead(folder: Path) -> None:
         problems=[ProblemSpec(name="dense", random={"size": 32, "p0": 0.2, "seeds": 1})],
         algorithms=[AlgorithmSpec(algorithm="NSGA2", pop_size=200)],
         seeds=N_PAIRS * N_TOGETHER,
-        budget={"generations": 140},
+        budget={"generations": 200},
         reference=False,
     ).plan()
     execute(plan.task(plan.runs[0]))  # load what is compiled
@@ -227,7 +227,8 @@ def overhead(folder: Path) -> None:
         for run in runs:
             task = plan.task(run)
             problem = build_problem(task.problem, task.grid)
-            minimize(problem, build_algorithm(task.algorithm, problem), build_termination(task.budget or {}), seed=task.seed)
+            algorithm = build_algorithm(task.algorithm, problem)
+            minimize(problem, algorithm, build_termination(task.budget or {}, algorithm), seed=task.seed)
 
     def studied(runs) -> None:
         # A folder of their own, since it holds one study.
