@@ -39,8 +39,9 @@ def replace_file(path: Path, data: bytes) -> None:
         If the file cannot be written.
     """
     temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.part")
+    file = open(temporary, "xb")  # noqa: SIM115
     try:
-        with open(temporary, "xb") as file:
+        with file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
@@ -70,10 +71,10 @@ def _sync_folder(folder: Path) -> None:
     """Bring the names in a folder to the disk, so that a power failure does not undo a renaming."""
     if os.name == "nt":
         return  # folders cannot be opened there
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        # Some file systems cannot; the file is in place all the same.
-        with contextlib.suppress(OSError):
+    # Some folders cannot be read, and some file systems cannot do it; the file is in place all the same.
+    with contextlib.suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
             os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+        finally:
+            os.close(descriptor)

@@ -45,7 +45,7 @@ class Budget:
     Attributes
     ----------
     max_seconds : float, optional
-        Asked many times a second.
+        Asked many times a second if kernels are compiled, else about once a second.
     max_labels : int, optional
         Labels open and closed at a time.
     max_memory : int, optional
@@ -96,7 +96,7 @@ class Meter:
         self.watch = budget.watch
         self.message = ""
         self.n_fixed = self.n_labels = self.n_bytes = 0
-        self._asking = threading.Lock()
+        self._asking = threading.RLock()
 
     @property
     def elapsed(self) -> float:
@@ -125,8 +125,10 @@ class Meter:
         """Set `message` if the time is used up or who watches wants an end; return whether it is set."""
         # Searches that go on side by side ask in turn.
         with self._asking:
+            if self.message:
+                return True
             if self.elapsed >= self.seconds:
                 self.message = f"the time budget of {self.seconds:g} s is used up"
-            elif self.watch is not None and not self.message and self.watch(self):
+            elif self.watch is not None and self.watch(self):
                 self.message = "stopped by who watched it"
         return bool(self.message)

@@ -42,8 +42,9 @@ class ExactResult:
         A path for each point, as genes.
     F : numpy.ndarray of float, shape (N, n_obj)
         The front, in ascending order of the first objective, no point twice. If it is not complete, points that are mutually
-        non-dominated: of two objectives the two ends of the front, unless the time was too short even for these, and the best
-        paths between them that were found, which may lie off the front; of three a part of the front.
+        non-dominated: of two objectives the two ends of the front, as far as the unit tells that costs had to be rounded to and
+        unless the time was too short even for these, and the best paths between them that were found, which may lie off the
+        front; of three a part of the front.
     complete : bool
         Whether this is the whole front.
     message : str
@@ -98,7 +99,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     if moves.n_cells >= _MOST_CELLS:
         raise CapabilityError(f"the grid has {moves.n_cells:,} cells, expected fewer than {_MOST_CELLS:,} for an exact front")
     meter = Meter(budget or Budget())
-    parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter)
+    parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter, set())
     seconds = meter.elapsed
     X, F = _scored(problem, parts)
     if meter.message:
@@ -118,19 +119,30 @@ def _place(objective) -> int:
 
 @dataclass(frozen=True)
 class _Part:
-    """Paths that a search found, what it says of their objectives, shape (N, n_obj), and by how much rounding may be off."""
+    """What a search found.
+
+    Attributes
+    ----------
+    paths : list of numpy.ndarray
+    F : numpy.ndarray, shape (N, n_obj)
+        What the search says of their objectives.
+    off : numpy.ndarray, shape (N, n_obj)
+        By how much that may be off, where costs had to be rounded.
+    rounded : numpy.ndarray of bool, shape (n_obj,)
+        Whether they had to be.
+    """
 
     paths: list[np.ndarray]
     F: np.ndarray
     off: np.ndarray
+    rounded: np.ndarray
 
 
-def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, first: int = 0) -> list[_Part]:
-    """Return fronts of paths over usable cells, bool, shape (n_cells,), that together hold the front of all of them.
+def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: set[bytes]) -> list[_Part]:
+    """Return paths over usable cells, bool, shape (n_cells,), among which is the front of all of them.
 
     Where costs have to be rounded, the cheapest paths may lose most of theirs. These visit no cell that costs more than they
-    do: a search among the cells that are left has a finer unit, and so on. Only objectives from the one with the number
-    ``first`` on are counted in finer units.
+    do: a search among the cells that are left has a finer unit, and so on. Sets of cells that were searched are not again.
     """
     costs = integer_costs(problem.objectives, problem.grid, usable)
     start, goal = moves.index(problem.start), moves.index(problem.goal)
@@ -142,22 +154,25 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, first: int 
         # A single objective is searched as two equal ones.
         front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
     points = front.points[:, np.argsort(order)] + costs.field[:, start]
-    parts, kept = [], np.ones(len(points), dtype=bool)
-    for k in np.flatnonzero(costs.rounded):
-        if k < first or meter.message:
-            continue
-        # The rounding of each cell may have hidden a path that costs a little more.
-        dearest = points[:, k] + moves.n_cells
-        values = np.sort(costs.field[k, usable])
-        left = np.cumsum(values)[np.searchsorted(values, dearest, side="right") - 1]
-        cheap = (points[:, k] < _FINE) & (left <= _FINER * values.sum())
-        if cheap.any():
-            within = usable & (costs.field[k] <= dearest[cheap].max())
-            parts += _search(problem, moves.within(within), within, meter, int(k))
-            kept &= ~cheap | bool(meter.message)
-    paths = [front.paths[k] for k in np.flatnonzero(kept)]
-    lengths = np.array([len(path) for path in paths]).reshape(-1, 1)
-    return [*parts, _Part(paths, points[kept] * costs.unit, lengths * costs.unit * costs.rounded)]
+    lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
+    parts = [_Part(front.paths, points * costs.unit, lengths * costs.unit * costs.rounded, costs.rounded)]
+    finer = [_cells_of_cheap(points[:, k], costs.field[k], usable) for k in np.flatnonzero(costs.rounded)]
+    del costs, front
+    for within in finer:
+        if within is not None and not meter.message and within.tobytes() not in searched:
+            searched.add(within.tobytes())
+            parts += _search(problem, moves.within(within), within, meter, searched)
+    return parts
+
+
+def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) -> np.ndarray | None:
+    """Return the usable cells that paths of low cost can visit, or None if there is no such path, or no finer unit for it."""
+    # The rounding of each cell may have hidden a path that costs a little more.
+    dearest = costs + np.count_nonzero(usable)
+    values = np.sort(field[usable])
+    left = np.cumsum(values)[np.searchsorted(values, dearest, side="right") - 1]
+    cheap = (costs < _FINE) & (left <= _FINER * values.sum())
+    return usable & (field <= dearest[cheap].max()) if cheap.any() else None
 
 
 def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray]:
@@ -176,10 +191,10 @@ def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray]:
             f"field of None then"
         )
     keep = np.lexsort(F.T[::-1])
-    rounded = np.flatnonzero(off.any(axis=0))
-    if len(rounded):
+    rounded = np.any([part.rounded for part in parts], axis=0)
+    if len(F) and rounded.any():
         compared = F[keep]
-        for k in rounded:
+        for k in np.flatnonzero(rounded):
             compared[:, k] = _ranks(compared[:, k])
         keep = keep[moocore.is_nondominated(compared)]
     if problem.obstacles == "limit":

@@ -69,7 +69,12 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     if not COMPILED or moves.n_cells < _CELLS_WORTH_THREADS:
         return _supported_points(moves, costs, start, goal, n_weights, meter, map)
     with ThreadPoolExecutor(_SIDE_BY_SIDE) as threads:
-        return _supported_points(moves, costs, start, goal, n_weights, meter, threads.map)
+        try:
+            return _supported_points(moves, costs, start, goal, n_weights, meter, threads.map)
+        except BaseException as error:
+            # Such as Ctrl-C: the searches under way have to end, too.
+            meter.message = meter.message or f"ended by {type(error).__name__}"
+            raise
 
 
 def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, map_) -> Hull:

@@ -178,11 +178,11 @@ class MonotoneRepresentation(Representation):
     def prepare(self, field: np.ndarray) -> np.ndarray:
         """Return a field over the grid as prefix sums up each column of the frame.
 
-        If these cannot be exact, as those of dear cells beside cheap ones, it is returned by the index of the cell, in float,
-        shape (height * width,).
+        If these lose the cost of a cell, as those of cheap cells beside dear ones, it is returned by the index of the cell, in
+        float, shape (height * width,).
         """
-        sums = self.frame.prefix_sums(field)
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore", over="ignore"):
+            sums = self.frame.prefix_sums(field)
             if np.array_equal(np.diff(sums, axis=1), self.frame.columns(field)):
                 return sums
         return np.asarray(field, dtype=float).ravel()

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
 
 #: The cost where no path leads; sums of two such numbers do not overflow.
@@ -58,16 +59,16 @@ def backward_costs(
     """
     cost = np.full((2, moves.n_cells * (8 if with_heading else 1)), UNREACHABLE)
     ahead = np.full(cost.shape[1], -1, dtype=np.int8)
-    heap = np.empty((1024, 2), dtype=np.int64)
+    heap = np.empty((1024, 3), dtype=np.int64)
     n = 0
     for state in range(8 * goal, 8 * goal + 8) if with_heading else (goal,):
         cost[:, state] = 0
-        _push(heap, n, 0, state)
+        push(heap, n, 0, 0, state)
         n += 1
     if spent is None:
         spent = np.zeros(moves.n_cells, dtype=np.int64)
     while n > 0:
-        arrays = step, field, with_heading, spent, limit, cost[0], cost[1], ahead
+        arrays = step, field, with_heading, spent, limit, cost, ahead
         heap, n = _expand(moves.legal, moves.offsets, *arrays, heap, n, _POPS_AT_A_TIME)
         if n > 0 and stop is not None and stop():
             break
@@ -75,26 +76,22 @@ def backward_costs(
 
 
 @kernel
-def _expand(legal, offsets, step, field, with_heading, spent, limit, first, second, ahead, heap, n, max_pops):
-    """Expand at most so many of the ``n`` states in a heap, cheapest first; return the heap and how many it then holds.
-
-    States with the same first cost come in any order: one whose second cost falls afterwards comes again.
-    """
+def _expand(legal, offsets, step, field, with_heading, spent, limit, cost, ahead, heap, n, max_pops):
+    """Expand at most so many of the ``n`` states in a heap, cheapest first; return the heap and how many it then holds."""
     n_cells = len(legal)
     pops = 0
     while n > 0 and pops < max_pops:
-        total1 = heap[0, 0]
-        state = heap[0, 1]
-        _drop_first(heap, n)
+        first = heap[0, 0]
+        second = heap[0, 1]
+        state = heap[0, 2]
+        drop_first(heap, n)
         n -= 1
-        if total1 > first[state]:
+        if first > cost[0, state] or second > cost[1, state]:
             continue
         pops += 1
         if n + 64 > len(heap):
             heap = grown(heap)
         cell = state >> 3 if with_heading else state
-        total1 += field[0, cell]
-        total2 = second[state] + field[1, cell]
         for m in range(8):
             # A state with a heading can only have been reached along it.
             if with_heading and m != state & 7:
@@ -105,52 +102,17 @@ def _expand(legal, offsets, step, field, with_heading, spent, limit, first, seco
             for h in range(8 if with_heading else 1):
                 origin = 8 * before + h if with_heading else before
                 heading = h if with_heading else 8
-                origin1 = total1 + step[0, heading, m]
-                if origin1 > first[origin] or origin1 + spent[before] >= limit:
+                total1 = first + step[0, heading, m] + field[0, cell]
+                total2 = second + step[1, heading, m] + field[1, cell]
+                if total1 + spent[before] >= limit:
                     continue
-                origin2 = total2 + step[1, heading, m]
-                if origin1 < first[origin] or origin2 < second[origin]:
-                    first[origin] = origin1
-                    second[origin] = origin2
+                if total1 < cost[0, origin] or (total1 == cost[0, origin] and total2 < cost[1, origin]):
+                    cost[0, origin] = total1
+                    cost[1, origin] = total2
                     ahead[origin] = m
-                    _push(heap, n, origin1, origin)
+                    push(heap, n, total1, total2, origin)
                     n += 1
     return heap, n
-
-
-# A heap of rows (cost, state). With one key and two columns it is a quarter faster here than that of `heap`.
-
-
-@kernel
-def _push(heap, n, cost, state):
-    """Add an entry to the ``n`` that the heap holds."""
-    i = n
-    while i > 0:
-        up = (i - 1) >> 1
-        if heap[up, 0] <= cost:
-            break
-        heap[i, 0] = heap[up, 0]
-        heap[i, 1] = heap[up, 1]
-        i = up
-    heap[i, 0] = cost
-    heap[i, 1] = state
-
-
-@kernel
-def _drop_first(heap, n):
-    """Remove the least entry, ``heap[0]``, of the ``n`` that the heap holds."""
-    last = n - 1
-    i = 0
-    down = 1
-    # The gap sinks to a leaf, where the last entry fits or nearly so.
-    while down < last:
-        if down + 1 < last and heap[down + 1, 0] < heap[down, 0]:
-            down += 1
-        heap[i, 0] = heap[down, 0]
-        heap[i, 1] = heap[down, 1]
-        i = down
-        down = 2 * i + 1
-    _push(heap, i, heap[last, 0], heap[last, 1])
 
 
 @kernel

@@ -180,7 +180,8 @@ class Store:
             try:
                 make_folder(self.folder)
                 held = stack.enter_context(locked(self.folder / "lock"))
-                self._remove_unfinished()
+                if held:
+                    self._remove_unfinished()
             except BlockingIOError:
                 raise GridPathError(
                     f"{self.folder} is in use by another run of a study, expected one at a time; wait for it or choose another "

@@ -218,6 +218,7 @@ def test_costs_of_any_size_have_every_point_of_the_enumeration(solvable_seeds, p
             points = table[same.argmax(axis=1)]
             better = (table[:, None] <= points).all(axis=2) & (table[:, None] < points * (1 - 1e-11)).any(axis=2)
             assert not better.any(), (seed, problem.objective_names)
+            assert len(np.unique(found.F, axis=0)) == len(found.F)
             # ... and nothing that none beats by more than rounding is left out.
             assert (table[:, None] * (1 + 1e-9) >= found.F).all(axis=2).any(axis=1).all(), (seed, problem.objective_names)
             n_points += len(found.F)

@@ -20,6 +20,7 @@ from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.problems import random_dense_grid
 from pymoo_gridpath.representations import CellSequence
+from pymoo_gridpath.search import DIAGONAL, UNREACHABLE, Moves, backward_costs
 
 
 def random_grid(size, seed, density=0.2):
@@ -187,10 +188,18 @@ def test_a_budget_of_time_ends_a_search_for_bounds(objectives):
     problem = GridPathProblem(random_grid(150, 5), (0, 0), (149, 149), objectives=objectives, representation="cells")
     asked = []
     found = exact_front(problem, Budget(watch=lambda meter: not asked.append(meter)))
-    assert len(asked) <= 3 and found.message == "ended early, stopped by who watched it; 0 paths found"
+    assert len(asked) == 1 and found.message == "ended early, stopped by who watched it; 0 paths found"
     result = minimize(problem, ExactFront(max_seconds=0.0))
     assert (result.X, result.success) == (None, False)
     assert result.message == "ended early, the time budget of 0 s is used up; 0 paths found"
+
+
+def test_a_search_for_bounds_ends_where_it_is_told_to():
+    moves, nothing = Moves(random_grid(150, 5)), np.zeros((2, 150 * 150), dtype=np.int64)
+    steps = np.ones((2, 9, 8), dtype=np.int64)
+    whole, ended = (backward_costs(moves, steps, nothing, 0, stop=stop)[0] for stop in (None, lambda: True))
+    n_whole, n_ended = (np.count_nonzero(cost[0] < UNREACHABLE) for cost in (whole, ended))
+    assert 2**13 <= n_ended < n_whole
 
 
 def test_what_watches_ends_the_search_and_is_not_in_the_result():
@@ -283,6 +292,40 @@ def test_costs_far_apart_keep_the_cheap_part_of_the_front():
     assert not cheap.all() and cheap.sum() > 3
 
 
+def test_paths_that_hide_behind_cheaper_ones_are_found_in_any_order():
+    """Three corridors that cost (0, 0.4), (1000, 0) and (1000.4, 0), beside cells so dear that the last two look the same."""
+    free = np.zeros((7, 9), dtype=bool)
+    free[:, 0] = free[:, 6] = free[0, :7] = free[3, :7] = free[6, :7] = free[5, 2:5] = True
+    free[6, 3] = False
+    first, second = np.zeros((2, 7, 9))
+    second[3, 3] = 0.4
+    first[0, 2:4], first[6, 2] = (1000.0, 0.4), 1000.0
+    expected = [[0.0, 0.4], [1000.0, 0.0]]
+    for dear in (0.0, 2.0**58 + 1e10):
+        first[3, 7], second[2, 7] = dear, dear
+        free[2:4, 7] = dear > 0
+        for order in ((0, 1), (1, 0)):
+            objectives = [(Cost("first", first), Cost("second", second))[k] for k in order]
+            found = exact_front(GridPathProblem(OccupancyGrid(~free), (0, 3), (6, 3), "cells", objectives))
+            assert sorted(found.F[:, order].tolist()) == expected
+
+
+def test_parts_of_a_front_that_meet_make_no_twins():
+    first = np.array([[0, 0, 0], [0.125, 1e20, 0], [0.25, 0.125, 0]])
+    second = np.array([[0, 0.5, 0.25], [0.125, 1e20, 0], [0, 0, 0]])
+    grid = OccupancyGrid(np.zeros((3, 3)), corner_cutting=True)
+    found = exact_front(GridPathProblem(grid, (0, 0), (2, 2), "cells", [Cost("first", first), Cost("second", second)]))
+    assert found.F.tolist() == [[0.0, 0.5], [0.25, 0.125]]
+
+
+def test_cells_are_expanded_once_where_steps_cost_nothing():
+    moves, nothing = Moves(OccupancyGrid(np.zeros((200, 200)))), np.zeros((2, 200 * 200), dtype=np.int64)
+    steps = np.stack([np.zeros((9, 8), dtype=np.int64), np.tile(np.where(DIAGONAL, 14, 10), (9, 1))])
+    asked = []
+    cost = backward_costs(moves, steps, nothing, 0, stop=lambda: bool(asked.append(1)))[0]
+    assert len(asked) == 200 * 200 // 2**13 and cost[1, -1] == 199 * 14
+
+
 def test_costs_whose_sum_is_no_number_are_refused():
     field = np.full((5, 5), 1e308)
     problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "cells", ["length", Cost("wall", field)])
@@ -328,7 +371,7 @@ def test_arguments_are_checked():
             ExactFront(max_memory=value)
 
 
-def test_whatever_the_budget_both_ends_of_a_front_of_two_are_found():
+def test_both_ends_of_a_front_of_two_are_found_where_their_searches_are_short():
     problem = GridPathProblem(random_grid(60, 2), (0, 0), (59, 59), "cells")
     found = exact_front(problem, Budget(max_seconds=0.0))
     front = problem.pareto_front()
