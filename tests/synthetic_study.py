@@ -53,6 +53,9 @@ def make_plan(groups, algorithms, n_seeds, objectives=("length", "vulnerability"
     if reference:
         listed = algorithms.index("exact") if "exact" in algorithms else None
         runs += [PlannedRun(problem.reference, k, listed, 0) for k, problem in enumerate(problems)]
+    elif "exact" in algorithms:
+        listed = algorithms.index("exact")
+        runs += [PlannedRun(f"{k:06x}{0xE:06x}{0:020x}", k, listed, 0) for k in range(len(problems))]
     for p in range(len(problems)):
         for a, name in enumerate(algorithms):
             if name != "exact":

@@ -30,7 +30,7 @@ from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournamen
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
 from pymoo_gridpath.operators.mating import knows_arrays
-from pymoo_gridpath.operators.selection import CrowdingTournament
+from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 
 _OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
@@ -134,8 +134,6 @@ def refuse_problem(row: Capability, problem) -> None:
         raise CapabilityError(f"{row.name} takes {most}, the problem has {problem.n_obj}")
     if problem.has_constraints() and not row.constraints:
         raise CapabilityError(f"{row.name} cannot solve problems with constraints; use obstacles='penalty'")
-    if row.name == "OmniOptimizer" and (problem.xl == problem.xu).all():
-        raise CapabilityError("OmniOptimizer never ends on a problem with a single solution, and this one has no gene to vary")
 
 
 def build(
@@ -173,6 +171,8 @@ def build(
     if row.name in ("NSGA2", "SPEA2") and all(knows_arrays(given[key]) for key in _OPERATORS if key in given):
         # The same mating several times as fast; operators from elsewhere may need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
+    if row.name == "OmniOptimizer" and "selection" not in given:
+        settings["selection"] = NeighborTournament()
     settings.setdefault("evaluator", ArrayEvaluator())
     termination = settings.pop("termination", None)
     algorithm = cls(**settings)
@@ -189,8 +189,6 @@ def build(
 
 def _least_pop_size(row: Capability, given: Mapping[str, Any]) -> int:
     """Return the smallest population with which an algorithm ends."""
-    if row.name == "OmniOptimizer":
-        return 2
     if row.operators:
         return 1
     # Differential evolution draws distinct parents: the target, the base, and two for each difference.

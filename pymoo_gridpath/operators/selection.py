@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from pymoo.algorithms.moo.omni import NeighborBasedTournamentSelection
 from pymoo.operators.selection.tournament import TournamentSelection
 
 
@@ -39,6 +40,23 @@ class CrowdingTournament(TournamentSelection):
 
     def __init__(self, **kwargs):
         super().__init__(func_comp=by_dominance_and_crowding, **kwargs)
+
+
+class NeighborTournament(NeighborBasedTournamentSelection):
+    """The Omni-Optimizer's tournament between neighbours, pymoo's with the same draws.
+
+    pymoo's looks for a second individual for ever where there is but one; here that one is every parent.
+
+    References
+    ----------
+    K. Deb and S. Tiwari, "Omni-optimizer: A generic evolutionary algorithm for single and multi-objective optimization",
+    European Journal of Operational Research 185(3), 2008.
+    """
+
+    def _do(self, problem, pop, n_select, n_parents, **kwargs):
+        if len(pop) == 1:
+            return np.zeros((n_select, n_parents), dtype=int)
+        return super()._do(problem, pop, n_select, n_parents, **kwargs)
 
 
 def by_rank_turn_crowding(pop, P: np.ndarray, random_state=None, **kwargs) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import platform
 import time
@@ -26,6 +27,8 @@ from pymoo_gridpath.versions import versions
 MAX_RECORDS = 100
 # Of a traceback; the end says what happened.
 _MAX_MESSAGE = 20_000
+# How many times as many generations as a budget of evaluations asks for, and how many more, end a run.
+_LONGEST = 5, 20
 # Kinds of runs that this process has warmed up for.
 _warm: set[tuple] = set()
 
@@ -126,10 +129,26 @@ def _warm_up(task: Task, problem) -> None:
 def _search(problem, algorithm, seed: int, termination, recorder: Recorder):
     options = {} if termination is None else {"termination": termination}
     algorithm.setup(problem, seed=seed, callback=recorder, **options)
-    while algorithm.has_next():
+    most = _most_generations(algorithm)
+    while algorithm.has_next() and recorder.generation < most:
         algorithm.next()
     recorder.finish(algorithm)
-    return algorithm.result()
+    result = algorithm.result()
+    if algorithm.has_next():
+        result.message = f"ended after {most} generations, in which it made but {algorithm.evaluator.n_eval} evaluations"
+    return result
+
+
+def _most_generations(algorithm: Any) -> float:
+    """Return after how many generations to end a run whose budget is one of evaluations.
+
+    Where there are but few paths, some algorithms find next to no new one in a generation and would go on for hours, or for
+    ever.
+    """
+    most = getattr(algorithm.termination, "n_max_evals", None)
+    if most is None:
+        return math.inf
+    return _LONGEST[0] * math.ceil(most / max(algorithm.n_offsprings or algorithm.pop_size, 1)) + _LONGEST[1]
 
 
 class Members:
@@ -192,6 +211,8 @@ class Recorder(Callback):
     ----------
     seconds : list of float
         Of each record, since the recorder was made.
+    generation : int
+        Of the last one, from 1 on.
     """
 
     def __init__(self, objectives):
@@ -201,27 +222,27 @@ class Recorder(Callback):
         self._counts: list[tuple[int, int, int, float]] = []
         self._fronts: list[np.ndarray] = []
         self._n_obj = len(objectives)
-        self._generation = 0
+        self.generation = 0
         self._recorded = 0
         self._step = 1
         self._begin = time.perf_counter()
 
     # pymoo's CallbackCollection calls update() only, so this is the hook that works everywhere.
     def _update(self, algorithm: Any) -> None:
-        self._generation += 1
-        if (self._generation - 1) % self._step:
+        self.generation += 1
+        if (self.generation - 1) % self._step:
             return
         if len(self.seconds) == MAX_RECORDS:
             for records in (self.seconds, self._counts, self._fronts):
                 del records[1::2]
             self._step *= 2
-            if (self._generation - 1) % self._step:
+            if (self.generation - 1) % self._step:
                 return
         self._record(algorithm)
 
     def finish(self, algorithm: Any) -> None:
         """Make sure that the last generation is on record."""
-        if self._recorded == self._generation:
+        if self._recorded == self.generation:
             return
         if len(self.seconds) == MAX_RECORDS:
             for records in (self.seconds, self._counts, self._fronts):
@@ -236,7 +257,7 @@ class Recorder(Callback):
         self.seconds.append(seconds)
         self._counts.append((int(algorithm.evaluator.n_eval), members.n_legal, members.n_members, float(best)))
         self._fronts.append(F[members.front()])
-        self._recorded = self._generation
+        self._recorded = self.generation
 
     def history(self) -> History:
         """Return the records."""

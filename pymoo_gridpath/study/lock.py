@@ -14,6 +14,9 @@ except ImportError:  # Windows
     fcntl = None
     import msvcrt
 
+# What file systems say that know no locks.
+_NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL)
+
 
 @contextlib.contextmanager
 def locked(path: Path) -> Iterator[bool]:
@@ -38,6 +41,8 @@ def locked(path: Path) -> Iterator[bool]:
         except OSError as error:
             if error.errno in (errno.EAGAIN, errno.EACCES, errno.EDEADLK):
                 raise BlockingIOError(error.errno, os.strerror(error.errno), str(path)) from None
+            if error.errno not in _NO_LOCKS:
+                raise
             held = False
         yield held
     finally:

@@ -15,7 +15,7 @@ from pymoo_gridpath.study.report.front_plots import attainment_surfaces, plot_at
 from pymoo_gridpath.study.report.plots import band, plot_convergence, plot_ranks, plot_ratios
 from pymoo_gridpath.study.report.results import Curve, collect
 from pymoo_gridpath.study.report.statistics import friedman
-from pymoo_gridpath.study.report.stretched_axis import stretch_unit
+from pymoo_gridpath.study.report.stretched_axis import scale_sentence, stretch_unit
 
 
 def test_attainment_surfaces_are_attained_by_so_many_runs():
@@ -110,7 +110,7 @@ def test_ratios_near_one_are_told_apart_though_others_are_far(tmp_path):
     assert (0.9995 - 0.998) / (0.9995 - 0.1) < 0.002
 
 
-def test_the_axis_of_ratios_is_as_its_caption_says(tmp_path):
+def test_the_axis_of_ratios_is_as_it_is_defined(tmp_path):
     results, styles = results_of(tmp_path, ["a", "b", "c"])
     for run in results.runs:
         run.ratio = (0.0, 0.97, 1.0)[run.algorithm]
@@ -189,6 +189,45 @@ def test_no_text_lies_in_a_panel_of_fronts(tmp_path):
         fronts = np.concatenate([run.F for run in results.finished(k, [0])])
         found = sum(np.isclose(fronts, z, rtol=1e-9, atol=0).all(axis=1).any() for z in reference.points)
         assert ax.get_title(loc="left") == f"{styles[k].label}\n{found} of {len(reference)} points"
+
+
+def test_panels_of_attainment_say_in_how_many_runs_there_is_a_legal_path(tmp_path):
+    results, styles = results_of(tmp_path, ["a", "b"], n_seeds=5)
+    for run in results.finished(1, [0])[:3]:
+        run.F = np.empty((0, 2))
+    with report_style():
+        figure = plot_attainment(results, 0, styles)
+    assert [ax.get_title(loc="left") for ax in figure.axes] == ["a", "b\nlegal in 2 of 5 runs"]
+    assert overlaps(figure) == [] and not [text for ax in figure.axes for text in ax.texts]
+
+
+def test_equal_lengths_lie_at_the_foot_of_their_axis(tmp_path):
+    results, styles = results_of(tmp_path, ["a", "b"])
+    for run in results.runs:
+        run.curve = Curve(np.array([10.0, 20.0]), np.ones(2), np.ones(2), np.ones(2))
+    with report_style():
+        low, high = plot_convergence(results, [0], styles).axes[1].get_ylim()
+    assert 0.99 <= low < 1.0 < high and 1.0 - low < 0.1 * (high - low)
+
+
+def test_names_with_dollar_signs_are_drawn_as_they_are(tmp_path):
+    names = ["costs $5 or $6", "x" * 18 + "$" * 20, "$\\frac{1}$"]
+    results, styles = results_of(tmp_path, names)
+    assert styles[0].label == names[0] and styles[1].label == "x" * 18 + "$…" + "$" * 10
+    with report_style():
+        figure = plot_fronts(results, 0, styles)
+        rendered(figure, "png")
+    assert figure.axes[0].get_title(loc="left").startswith("costs $5 or $6\n")
+    assert not any(text.get_parse_math() for text in figure.findobj(Text))
+
+
+def test_captions_name_the_unit_of_each_panel(tmp_path):
+    results, _ = results_of(tmp_path, ["a", "b"], g=1, h=1)
+    for run in results.runs:
+        run.ratio = (0.97, 0.6)[run.problem]
+    groups = list(results.groups.values())
+    assert "u = 0.03)" in scale_sentence(results, groups[:1])
+    assert "u = 0.03, 0.4 from panel to panel)" in scale_sentence(results, groups)
 
 
 def test_lines_of_attainment_differ_without_colour(tmp_path):

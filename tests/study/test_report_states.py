@@ -1,5 +1,6 @@
 """Reports of small studies, unusual ones and those of which something is missing."""
 
+import dataclasses
 import html
 import re
 
@@ -58,6 +59,38 @@ def test_an_exact_front_that_is_not_whole_does_not_serve(tmp_path, change):
     page = texts(tmp_path / "report")[0]
     assert "but on 1 of 2 problems the merged front of all runs" in page
     assert "Problems without an exact front" in page
+
+
+def test_an_exact_front_among_the_algorithms_serves_where_no_other_is_wanted(tmp_path):
+    plan = made.make_plan({"g": 2}, ["a", "exact"], n_seeds=3, reference=False)
+    exact = [run for run in plan.runs if run.algorithm == 1]
+    store = made.fill(tmp_path, plan, n_records=6, n_points=6, incomplete=[exact[1].key])
+    references = collect(store).references
+    assert [reference.front.exact for reference in references] == [True, False]
+    assert references[0].front.points == pytest.approx(store.read(exact[0].key).F)
+    assert (references[0].reason, references[0].seconds) == ("", 0.25)
+    write_report(tmp_path, formats=())
+    assert "No exact front is at hand for 1 of 2 problems" in texts(tmp_path / "report")[0]
+
+
+def test_an_exact_front_of_an_overridden_problem_does_not_serve(tmp_path):
+    plan = made.make_plan({"g": 1}, ["a", "exact"], n_seeds=3, reference=False)
+    store = made.fill(tmp_path, plan, n_records=6, n_points=6)
+    run = next(run for run in plan.runs if run.algorithm == 1)
+    record = store.read(run.key)
+    other = record.problem | {"representation": "cells"}
+    store.write(run.key, to_bytes(type(record)(**{**vars(record), "problem": other})))
+    assert not collect(store).references[0].front.exact
+
+
+def test_a_longer_exact_search_among_the_algorithms_serves_where_the_wanted_one_fell_short(tmp_path):
+    plan = made.make_plan({"g": 1}, ["a", "exact"], n_seeds=2)
+    longer = dataclasses.replace(plan.runs[0], key="f" * 32)
+    wanted = dataclasses.replace(plan.runs[0], algorithm=None)
+    plan = dataclasses.replace(plan, runs=(wanted, longer, *plan.runs[1:]))
+    store = made.fill(tmp_path, plan, n_records=6, n_points=6, incomplete=[wanted.key])
+    results = collect(store)
+    assert results.references[0].front.exact and len(results.references[0].front) == len(store.read(longer.key).F)
 
 
 def test_runs_that_are_but_a_reference_are_counted_apart(tmp_path):

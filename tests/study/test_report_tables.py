@@ -10,8 +10,9 @@ import synthetic_study as made
 from synthetic_study import texts
 
 from pymoo_gridpath.study import AlgorithmSpec, ProblemSpec, Store, Study
+from pymoo_gridpath.study.record import to_bytes
 from pymoo_gridpath.study.report import write_report
-from pymoo_gridpath.study.report.blocks import Fold
+from pymoo_gridpath.study.report.blocks import Fold, markdown
 from pymoo_gridpath.study.report.results import collect
 from pymoo_gridpath.study.report.settings import settings_blocks
 from pymoo_gridpath.study.report.tables import (
@@ -106,6 +107,12 @@ def test_a_table_too_long_for_a_page_is_not_among_those_in_latex(tmp_path):
     assert r"\label{tab:g-quality}" in latex
 
 
+def test_in_markdown_a_folded_table_has_one_title():
+    table = Table("t", "Each one.", ["a", "b"], [["1", "2"]])
+    assert markdown([Fold("Each one", (table,))], "f").count("Each one") == 1
+    assert markdown([Fold("More", (table, table))], "f").startswith("**More**\n")
+
+
 # -- settings -----------------------------------------------------------------------------------------------------------
 
 
@@ -130,8 +137,21 @@ def test_the_settings_say_what_an_algorithm_changes_in_which_problems(tmp_path):
     algorithms = [AlgorithmSpec(preset="ahmed-deb-2013"), AlgorithmSpec(algorithm="NSGA2", representation="cells")]
     rows = tables_of(tmp_path, study_of(algorithms))["algorithms"]
     assert [row["changes in problems"] for row in rows] == [
-        "penalty 1 on random; representation integer on map",
-        "representation cells on random; nothing on map",
+        "on random: penalty of 1 a cell; on map: representation integer",
+        "on random: representation cells; on map: nothing",
+    ]
+
+
+def test_the_settings_say_how_an_algorithm_treats_obstacles_and_no_more(tmp_path):
+    plain = ProblemSpec(map="paper16", representation="integer", obstacles="constraint")
+    algorithms = [
+        AlgorithmSpec(name="penalty", algorithm="NSGA2", obstacles="penalty"),
+        AlgorithmSpec(name="limit", algorithm="NSGA2", obstacles="limit", potential_limit=4.0, representation="binary"),
+    ]
+    rows = tables_of(tmp_path, study_of(algorithms, problems=[plain]))["algorithms"]
+    assert [row["changes in problems"] for row in rows] == [
+        "penalty of 2 a cell",
+        "representation binary, vulnerability at most 4, penalty of 256 a cell",
     ]
 
 
@@ -164,12 +184,45 @@ def test_the_settings_say_what_algorithms_are_in_words(tmp_path):
     assert [row["ties by turn"] for row in rows] == ["yes", "yes", "no", "yes", NOTHING]
     assert [row["other settings"] for row in rows] == [NOTHING, "n_neighbors 7", NOTHING, NOTHING, "at most 5 seconds"]
     operators = [row["operators"] for row in rows]
-    assert operators[0] == operators[3] == "those of Ahmed and Deb (2013)" and "from random paths" in operators[1]
-    assert operators[2].startswith("those of Ahmed and Deb (2013); crossover SpliceCrossover")
+    assert operators[0] == operators[3] == "as in Ahmed and Deb (2013)" and "from random paths" in operators[1]
+    assert operators[2] == "as in Ahmed and Deb (2013), but with crossover SpliceCrossover"
     assert not re.search(r"[{}\"]", " ".join(cell for row in rows for cell in row.values()))
 
 
 def test_default_operators_are_those_of_the_representation(tmp_path):
     rows = tables_of(tmp_path, study_of([AlgorithmSpec(algorithm="NSGA2"), AlgorithmSpec(algorithm="GDE3")]))["algorithms"]
-    assert rows[0]["operators"] == "those of Ahmed and Deb (2013) on random; path-aware, from scalarized paths on map"
-    assert rows[1]["operators"].startswith("sampling and repair those of Ahmed and Deb (2013) on random; ")
+    of_the_paper, aware = "as in Ahmed and Deb (2013)", "path-aware, from scalarized paths"
+    assert rows[0]["operators"] == f"on random: {of_the_paper}; on map: {aware}"
+    assert rows[1]["operators"] == f"on random: sampling and repair {of_the_paper}; on map: sampling and repair {aware}"
+
+
+def test_single_operators_are_named_with_the_arguments_that_are_no_defaults(tmp_path):
+    splice = {"class": "SpliceCrossover", "reach": 6, "prob": 0.9}
+    given = [
+        ("NSGA2", {"base": "paper", "crossover": {"class": "PointCrossover", "n_points": 3}, "mutation": "BitwiseMutation"}),
+        ("NSGA2", {"base": "random", "sampling": {"class": "ScalarizedSampling", "noise": 0.25}, "crossover": splice}),
+        ("NSGA2", {"base": "scalarized", "mutation": {"class": "PathMutation", "margin": 16}}),
+        ("GDE3", {"sampling": "ReachableSampling"}),
+        ("GDE3", {"sampling": "ReachableSampling", "repair": "PathRepair"}),
+    ]
+    algorithms = [AlgorithmSpec(name=f"a{k}", algorithm=name, operators=operators) for k, (name, operators) in enumerate(given)]
+    problem = ProblemSpec(random={"size": 8, "p0": 0.2}, representation="integer")
+    rows = tables_of(tmp_path, study_of(algorithms, problems=[problem]))["algorithms"]
+    assert [row["operators"] for row in rows] == [
+        "as in Ahmed and Deb (2013), but with crossover PointCrossover (n_points 3) and mutation BitwiseMutation",
+        "path-aware, but with sampling ScalarizedSampling (noise 0.25) and crossover SpliceCrossover (reach 6)",
+        "path-aware, from scalarized paths",
+        "repair as in Ahmed and Deb (2013), sampling ReachableSampling",
+        "sampling ReachableSampling, repair PathRepair",
+    ]
+
+
+@pytest.mark.parametrize(("sizes", "shown"), [((91, 91), "91 (given: 100)"), ((100, 100), "100"), ((91, 90), "100")])
+def test_the_settings_say_how_many_members_there_were(tmp_path, sizes, shown):
+    plan = made.make_plan({"g": 1}, ["a"], 2)
+    store = made.fill(tmp_path, plan, n_records=4, n_points=5)
+    for run, size in zip([run for run in plan.runs if run.algorithm is not None], sizes, strict=True):
+        record = store.read(run.key)
+        store.write(run.key, to_bytes(type(record)(**{**vars(record), "n_members": size})))
+    tables = {block.name: block for block in settings_blocks(collect(store), times=False) if isinstance(block, Table)}
+    assert tables["algorithms"].rows[0][3] == shown

@@ -14,7 +14,9 @@ from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.execute import execute
 from pymoo_gridpath.study.plan import is_exact
+from pymoo_gridpath.study.record import from_bytes
 from pymoo_gridpath.study.specification import parameters as further
 from pymoo_gridpath.study.specification import trial
 from pymoo_gridpath.study.specification.study import Study
@@ -159,15 +161,26 @@ def test_large_maps_are_checked_fast():
     assert time.process_time() - begin < 4.0  # one generation of random paths on this map takes more than half a second
 
 
-def test_tiny_maps():
-    """With a single path to begin with the Omni-Optimizer draws pairs forever; the others go on."""
-    corridor = {"random": {"size": 3, "p0": 1.0}, "representation": "cells"}
-    assert "OmniOptimizer never ends" in refusal({"algorithm": "OmniOptimizer"}, corridor)
-    for name in ("NSGA2", "SPEA2", "MOEAD", "NSDE"):
-        run(plan_of({"algorithm": name, "pop_size": 8}, corridor))
-
-
 USABLE = [row for row in CAPABILITIES.values() if not row.unfit and row.needs != "automated_dm"]
+
+
+@pytest.mark.parametrize("size", [2, 3])
+def test_every_run_ends_where_there_are_but_few_paths(size, monkeypatch):
+    """Some algorithms would make generations without new paths for ever."""
+    monkeypatch.setattr("pymoo_gridpath.study.execute._LONGEST", (1, 2))
+    algorithms = [
+        {"algorithm": row.name, "pop_size": 20} | ({"parameters": {"ref_points": POINTS}} if row.needs == "ref_points" else {})
+        for row in USABLE
+        if row.max_objectives is None
+    ]
+    problem = {"random": {"size": size, "p0": 1.0}, "representation": "cells"}
+    plan = Study.from_dict(
+        {"problems": [problem], "algorithms": algorithms, "seeds": 1, "budget": {"evaluations": 80}, "reference": False}
+    ).plan()
+    records = [from_bytes(execute(plan.task(run))) for run in plan.runs]
+    assert len(records) > 15 and all(record.status == "finished" and len(record.F) for record in records)
+    stopped = [record for record in records if record.message]
+    assert stopped and all(record.message.startswith("ended after 6 generations, in which it made but") for record in stopped)
 
 
 @pytest.mark.parametrize("representation", REPRESENTATIONS)
@@ -185,6 +198,18 @@ def test_nothing_that_the_capability_table_allows_is_refused(representation, obs
     ]
     for few in (algorithms, [{**item, "pop_size": 20} for item in algorithms]):
         assert not any(is_exact(item.spec) for item in plan_of(few, problem).algorithms)
+
+
+def test_a_population_that_others_decide_is_not_given_too():
+    few = {"algorithm": "RNSGA3", "parameters": {"ref_points": POINTS, "pop_per_ref_point": 5}}
+    assert "pop_size is 30, but pop_per_ref_point makes it" in refusal(few | {"pop_size": 30})
+    # Ten or so, where the default of 100 would not fit into the budget.
+    plan_of(few, budget={"evaluations": 50})
+    many = {"algorithm": "RNSGA3", "parameters": {"ref_points": POINTS, "pop_per_ref_point": 100}}
+    assert "expected at most the 50 evaluations" in refusal(many, budget={"evaluations": 50})
+    directions = {"algorithm": "MOEAD", "parameters": {"ref_dirs": [[0, 1], [0.5, 0.5], [1, 0]], "n_neighbors": 2}}
+    assert "pop_size is 30, but ref_dirs makes it 3; leave pop_size out" in refusal(directions | {"pop_size": 30})
+    plan_of(directions)
 
 
 # -- parameters ---------------------------------------------------------------------------------------------------------
@@ -263,6 +288,7 @@ TAKEN = [
 
 @pytest.mark.parametrize(("name", "parameters"), TAKEN)
 def test_values_at_the_ends_of_their_ranges_are_taken_and_run(name, parameters):
-    plan = plan_of({"algorithm": name, "pop_size": 20, "parameters": parameters})
+    size = {} if {"ref_dirs", "pop_per_ref_point"} & parameters.keys() else {"pop_size": 20}
+    plan = plan_of({"algorithm": name, "parameters": parameters} | size)
     assert plan.algorithms[0].spec["parameters"].keys() == parameters.keys()
     run(plan)

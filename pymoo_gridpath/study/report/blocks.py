@@ -104,6 +104,9 @@ def _markdown(block: Block, folder: str) -> str:
     if isinstance(block, Picture):
         return _markdown_picture(block, folder)
     if isinstance(block, Fold):
+        if len(block.blocks) == 1 and isinstance(block.blocks[0], Table):
+            # Its caption is its title.
+            return markdown(block.blocks, folder)
         return f"**{escape_markdown(block.title)}**\n\n{markdown(block.blocks, folder)}"
     raise TypeError(f"a drawing has no text before it is drawn: {block.name}")
 

@@ -14,7 +14,7 @@ from pymoo_gridpath.study.report.figure_style import AlgorithmStyle, algorithm_s
 from pymoo_gridpath.study.report.front_plots import plot_attainment, plot_fronts
 from pymoo_gridpath.study.report.plots import plot_convergence, plot_ranks, plot_ratios
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.report.stretched_axis import SCALE_SENTENCE
+from pymoo_gridpath.study.report.stretched_axis import scale_sentence
 
 # Beyond these numbers, tables and figures of single problems or groups would bury the page.
 _MOST_PROBLEMS = 40
@@ -85,7 +85,7 @@ class Contents:
             caption = (
                 f"Hypervolume ratio of the final front to {summary.reference_phrase(results, problems)}: every "
                 "finished run is a point; the box reaches from the lower to the upper quartile, the thick line is the median. "
-                + SCALE_SENTENCE
+                + scale_sentence(results, list(shown.values()))
             )
             yield Drawing(f"ratios{number}", caption, partial(plot_ratios, results, shown, self.styles), "")
         if len(groups) > 1:
@@ -117,7 +117,7 @@ class Contents:
             f"Convergence on {group}: median (line) and quartiles (band) over the finished {over}. Ratios are to "
             f"{summary.reference_phrase(results, problems)}; lengths are over the least length on that front; legal members "
             "are those of the population that are legal paths. What is far off in the first tenth is cut, and there is no "
-            f"line where half of the runs have no legal path to measure. {SCALE_SENTENCE}"
+            f"line where half of the runs have no legal path to measure. {scale_sentence(results, [problems])}"
         )
         draw = partial(plot_convergence, results, problems, self.styles)
         yield Drawing(f"convergence-{name}", caption, draw, f"No run on {group} has a history to draw.")
@@ -126,7 +126,7 @@ class Contents:
         caption = (
             f"Empirical attainment surfaces on {first}: the border of what any run, half of the runs and all runs attain; the "
             f"band lies between a quarter and three quarters of them. Lines that coincide are drawn over one another. In grey "
-            f"{against}. Runs without a legal path attain nothing."
+            f"{against}. Runs without a legal path attain nothing; where there are some, titles count the others."
         )
         n_obj = len(results.plan.problems[problems[0]].spec["objectives"])
         random = any(results.finished(k, problems[:1]) for k in range(len(results.algorithms)) if not results.is_exact(k))

@@ -7,6 +7,7 @@ import json
 from pymoo_gridpath.study.report.blocks import Block, Heading, Text
 from pymoo_gridpath.study.report.measures import SAME
 from pymoo_gridpath.study.report.results import Results
+from pymoo_gridpath.study.report.stretched_axis import SCALE_DEFINITION
 from pymoo_gridpath.study.report.tables import Table
 
 
@@ -18,6 +19,7 @@ def definition_blocks(results: Results, times: bool) -> list[Block]:
         "nadir. An objective in which the front has no range counts in its own unit. Where the front is a single point, a "
         "run that reaches it has 1 and any other 0. Points beyond the reference point add nothing, so that a run with legal "
         "paths may have 0, as a run without any has.",
+        SCALE_DEFINITION,
         "IGD+: the mean distance, in the same normalised objectives, by which points of the front are missed (Ishibuchi and "
         "others, 2015); 0 is best, infinite without a legal path.",
         f"Front found: the share of the front's points that are among the run's, equal within {SAME:g} of the objective's "

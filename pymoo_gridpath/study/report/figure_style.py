@@ -68,7 +68,7 @@ def algorithm_styles(labels: Sequence[str], exact: Sequence[bool]) -> list[Algor
 
 def shortened(names: Sequence[str]) -> list[str]:
     """Return names short enough for figures, still all different."""
-    short = [" ".join(name.splitlines()).replace("$", r"\$") for name in names]
+    short = [" ".join(name.splitlines()) for name in names]
     short = [name if len(name) <= _LONGEST else f"{name[: _LONGEST - 11]}…{name[-10:]}" for name in short]
     return [f"{name} ({k + 1})" if short.count(name) > 1 else name for k, name in enumerate(short)]
 
@@ -100,6 +100,8 @@ def report_style():
     # From matplotlib's defaults on, so that no file of the user's settings makes equal reports differ.
     settings: Any = {**mpl.rcParamsDefault, **STYLE, "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8}
     del settings["backend"]
+    # Names may have dollar signs.
+    settings["text.parse_math"] = False
     return mpl.rc_context(settings)
 
 

@@ -21,6 +21,8 @@ from pymoo_gridpath.study.report.results import Results
 _BENEATH: dict[str, Any] = {"color": "#bcc0c6", "linewidth": 2.8, "solid_joinstyle": "miter"}
 _BEST: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (0.9, 1.3))}
 _WORST: dict[str, Any] = {"linewidth": 0.8, "linestyle": (0, (6, 2))}
+# The edge tells the band from the pale line beneath.
+_BAND: dict[str, Any] = {"linewidth": 0.4}
 
 
 def attainment_surfaces(fronts: Sequence[np.ndarray], shares: Sequence[float]) -> list[np.ndarray]:
@@ -64,26 +66,28 @@ def plot_attainment(results: Results, problem: int, styles: Sequence[AlgorithmSt
     surfaces = {k: attainment_surfaces(found, (0.0, 0.25, 0.5, 0.75, 1.0)) for k, found in fronts.items()}
     shown = [front for found in surfaces.values() for front in found[:4]]
     low, high = _limits([reference.points, *shown])
+    # Bands reach out of the plane, so that their edges do not run along its border.
+    beyond = high + 0.1 * (high - low)
     figure, axes = panel_figure(len(surfaces), 4, 1.75, extra=0.45)
     for ax, (k, (best, upper, median, lower, worst)) in zip(axes, surfaces.items(), strict=True):
         color = styles[k].color
-        x = np.unique(np.concatenate([upper[:, 0], lower[:, 0], [low[0], high[0]]]))
-        between = _height(upper, x, high[1]), _height(lower, x, high[1])
-        ax.fill_between(x, *between, step="post", color=color, alpha=0.25, linewidth=0)
+        x = np.unique(np.concatenate([upper[:, 0], lower[:, 0], [low[0], beyond[0]]]))
+        between = _height(upper, x, beyond[1]), _height(lower, x, beyond[1])
+        ax.fill_between(x, *between, step="post", facecolor=(color, 0.25), edgecolor=color, **_BAND)
         # Broad and pale, so that it is seen beneath surfaces that reach it.
         ax.plot(*_stairs(reference.points, low, high), **_BENEATH)
         ax.plot(*_stairs(best, low, high), color=color, **_BEST)
         ax.plot(*_stairs(worst, low, high), color=color, **_WORST)
         ax.plot(*_stairs(median, low, high), color=color, linewidth=1.1)
-        ax.set_title(panel_title(styles[k].label), loc="left")
-        if not len(median):
-            ax.text(0.5, 0.5, "half of the runs or more\nhave no legal path", transform=ax.transAxes, ha="center", va="center")
+        legal = sum(len(front) > 0 for front in fronts[k])
+        some = f"\nlegal in {legal} of {len(fronts[k])} runs" if legal < len(fronts[k]) else ""
+        ax.set_title(f"{panel_title(styles[k].label)}{some}", loc="left")
     _finish(results, problem, figure, axes, low, high)
     handles = [
         Line2D([], [], **_BENEATH, label=_reference_name(reference)),
         Line2D([], [], color="black", **_BEST, label="attained by any run"),
         Line2D([], [], color="black", linewidth=1.1, label="by half of the runs"),
-        Patch(facecolor="black", alpha=0.25, linewidth=0, label="by 25 % to 75 %"),
+        Patch(facecolor=("black", 0.25), edgecolor="black", **_BAND, label="by 25 % to 75 %"),
         Line2D([], [], color="black", **_WORST, label="by all runs"),
     ]
     legend_above(figure, handles)
@@ -152,7 +156,7 @@ def _stairs(front: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.nd
 
 
 def _height(front: np.ndarray, x: np.ndarray, top: float) -> np.ndarray:
-    """Return the least second objective attained at values of the first, at most that of the plane's top."""
+    """Return the least second objective attained at values of the first, no more than `top`."""
     if not len(front):
         return np.full(len(x), top)
     front = front[np.argsort(front[:, 0], kind="stable")]

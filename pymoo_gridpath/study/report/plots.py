@@ -89,8 +89,9 @@ def plot_convergence(results: Results, problems: Sequence[int], styles: Sequence
         if quantity == "ratio":
             stretch(ax.yaxis, stretch_unit(results, problems), settled, n_marks=12)
         elif quantity == "length" and len(settled):
-            room = 0.06 * np.ptp(settled) or 0.05
-            ax.set_ylim(settled.min() - room, settled.max() + room)
+            # Where all lengths are equal, the room is above them, since nothing lies below the shortest.
+            span = max(np.ptp(settled), 0.01)
+            ax.set_ylim(settled.min() - 0.06 * span, settled.min() + 1.06 * span)
         plain(ax)
     handles = [styles[k].handle(line=True) for k in curves]
     low, high = axes[0].get_ylim()

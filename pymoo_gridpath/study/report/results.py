@@ -16,6 +16,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.study.plan import Plan, PlannedRun, is_exact
 from pymoo_gridpath.study.record import DamagedRecordError, History, RunRecord
 from pymoo_gridpath.study.report.measures import ReferenceFront, first_reaching, merge_fronts
+from pymoo_gridpath.study.specification.canonical import resolve
 from pymoo_gridpath.study.store import Store
 
 
@@ -57,7 +58,7 @@ class RunResult:
         NaN unless finished, as all numbers that follow.
     turn : float
         Mean total turn of the paths of its front in degrees, ``inf`` if there is none.
-    n_points, n_eval, n_gen, seconds : float
+    n_points, n_members, n_eval, n_gen, seconds : float
     evaluations_to_target, seconds_to_target : float
         ``inf`` if the target was not reached.
     curve : Curve or None
@@ -76,6 +77,7 @@ class RunResult:
     share: float = math.nan
     turn: float = math.nan
     n_points: float = math.nan
+    n_members: float = math.nan
     n_eval: float = math.nan
     n_gen: float = math.nan
     seconds: float = math.nan
@@ -249,9 +251,15 @@ def _reference(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | No
     """Return the exact front of a problem, or the merged front of all runs and why."""
     planned = plan.problems[problem]
     exact, status = records.get(planned.reference or "", (None, "missing"))
+    finished = [record for record, status in records.values() if record is not None and status == "finished"]
+    fronts = [record.F for record in finished if len(record.F)]
+    whole = [record for record in finished if record.complete and is_exact(record.algorithm)]
+    if exact not in whole:
+        # An exact front among the algorithms serves as well, unless it is that of a problem with overrides.
+        same = (record for record in whole if record.problem == resolve(planned.spec, record.algorithm, {})[0])
+        exact = next(same, exact)
     seconds = exact.seconds if exact is not None else math.nan
-    fronts = [record.F for record, status in records.values() if record is not None and status == "finished" and len(record.F)]
-    if exact is not None and status == "finished" and exact.complete:
+    if exact is not None and exact in whole:
         front = ReferenceFront(exact.F, exact=True)
         return ProblemReference(front, "", seconds, bool(fronts) and front.exceeded_by(np.concatenate(fronts)))
     if planned.reference is None:
@@ -281,7 +289,7 @@ def _measure(result: RunResult, record: RunRecord, front: ReferenceFront, target
     result.seconds_to_target = record.seconds if reached else math.inf
     if is_exact(record.algorithm):
         return  # it makes no evaluations
-    result.n_eval, result.n_gen = record.n_eval, record.n_gen
+    result.n_eval, result.n_gen, result.n_members = record.n_eval, record.n_gen, record.n_members
     result.evaluations_to_target = record.n_eval if reached else math.inf
     if record.history is not None and len(record.history):
         result.curve = _curve(record.history, record.objectives, front)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -13,16 +14,16 @@ from pymoo_gridpath.study.report.measures import quartiles
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.summary import reference_phrase
 from pymoo_gridpath.study.report.tables import NOTHING, Table, count, significant, spread
-from pymoo_gridpath.study.specification.canonical import resolve
+from pymoo_gridpath.study.specification.canonical import operator_classes, resolve
 
 # Rows of the list of single problems.
 _MOST_ROWS = 40
 
-# What the names of sets of operators stand for.
+# What the names of sets of operators stand for, and what to add unless they begin otherwise.
 _OPERATORS = {
-    "paper": "those of Ahmed and Deb (2013)",
-    "scalarized": "path-aware, from scalarized paths",
-    "random": "path-aware, from random paths",
+    "paper": ("as in Ahmed and Deb (2013)", ""),
+    "scalarized": ("path-aware", ", from scalarized paths"),
+    "random": ("path-aware", ", from random paths"),
 }
 
 
@@ -97,34 +98,73 @@ def _algorithms_table(results: Results) -> Table:
         in_groups = zip(*(_in_problem(problem, algorithm) for problem in firsts), strict=True)
         operators, ties, changes = (_by_group(list(results.groups), texts) for texts in in_groups)
         method = spec["algorithm"] if "algorithm" in spec else f"{spec['preset']} (preset)"
-        population = str(spec.get("pop_size", NOTHING))
-        rows.append([str(k + 1), algorithm.label, method, population, operators, ties, _other(spec), changes])
+        rows.append([str(k + 1), algorithm.label, method, _population(results, k), operators, ties, _other(spec), changes])
     notes = [
         "Ties by turn: whether paths that are otherwise equal are told apart by their total turn. Parameters that are not "
-        "named have their defaults."
+        "named, also those of operators, have their defaults."
     ]
     return Table("algorithms", "Algorithms.", header, rows, left=8, notes=notes, for_papers=False)
+
+
+def _population(results: Results, algorithm: int) -> str:
+    """Return how many members a population has; some algorithms make it of another size than was given."""
+    given = results.plan.algorithms[algorithm].spec.get("pop_size")
+    if given is None:
+        return NOTHING
+    found = set(results.values("n_members", algorithm, range(len(results.plan.problems))).tolist())
+    return str(given) if len(found) != 1 or given in found else f"{found.pop():.0f} (given: {given})"
 
 
 def _in_problem(problem: dict[str, Any], algorithm: PlannedAlgorithm) -> tuple[str, str, str]:
     """Return the operators of an algorithm on a problem, whether it breaks ties by turn, and what it changes in it."""
     changed, settled = resolve(problem, algorithm.spec, algorithm.overrides)
-    changes = _listed({key: value for key, value in changed.items() if value != problem.get(key)}) or NOTHING
+    changes = _changes(problem, changed)
     if "preset" in settled:
         # As `ahmed_deb_2013` has it.
-        return _OPERATORS["paper"], "yes" if len(problem["objectives"]) == 2 else "no", changes
+        return _OPERATORS["paper"][0], "yes" if len(problem["objectives"]) == 2 else "no", changes
     if settled["algorithm"] == "exact":
         return NOTHING, NOTHING, changes
-    given = dict(algorithm.spec["operators"])
-    base = given.pop("base")
+    base = algorithm.spec["operators"]["base"]
+    _, plain = resolve(problem, {**algorithm.spec, "operators": {"base": base}}, algorithm.overrides)
     if base == "default":
-        _, plain = resolve(problem, {**algorithm.spec, "operators": {"base": base}}, algorithm.overrides)
         base = "paper" if plain["operators"]["sampling"]["class"] == "RandomSampling" else "scalarized"
-    words = _OPERATORS[base] if "crossover" in settled["operators"] else f"sampling and repair {_OPERATORS[base]}"
-    for slot, single in given.items():
-        arguments = _listed({key: value for key, value in single.items() if key != "class"})
-        words += f"; {slot.replace('_', ' ')} {single['class']}{f' ({arguments})' if arguments else ''}"
+    words = _operators(base, plain["operators"], settled["operators"])
     return words, "yes" if settled["smoothness"] else "no", changes
+
+
+def _operators(base: str, plain: Mapping[str, Any], settled: Mapping[str, Any]) -> str:
+    """Return a set of operators in words, and the single ones that differ from it."""
+    own = {slot: single for slot, single in settled.items() if single != plain.get(slot)}
+    words, beginning = _OPERATORS[base]
+    if "sampling" not in own:
+        words += beginning
+    singles = [_operator(slot, single) for slot, single in own.items()]
+    if "crossover" not in plain:
+        # The algorithm makes its children itself, and takes these alone.
+        kept = " and ".join(slot for slot in plain if slot not in own)
+        return ", ".join([*[f"{kept} {words}"] * bool(kept), *singles])
+    if not singles:
+        return words
+    return f"{words}, but with {', '.join(singles[:-1])}{' and ' * (len(singles) > 1)}{singles[-1]}"
+
+
+def _operator(slot: str, single: Mapping[str, Any]) -> str:
+    """Return a single operator with the arguments that are not its class's defaults."""
+    parameters = inspect.signature(operator_classes(slot)[single["class"]]).parameters
+    arguments = {key: value for key, value in single.items() if key != "class" and value != parameters[key].default}
+    kind = "duplicates" if slot == "eliminate_duplicates" else slot
+    return f"{kind} {single['class']}{f' ({_listed(arguments)})' if arguments else ''}"
+
+
+def _changes(problem: Mapping[str, Any], changed: Mapping[str, Any]) -> str:
+    """Return what an algorithm changes in a problem."""
+    words = []
+    if _representation(changed) != _representation(problem):
+        words.append(f"representation {_representation(changed)}")
+    obstacles = _obstacles(changed)
+    if obstacles != _obstacles(problem):
+        words.append(f"obstacles {obstacles}" if obstacles == "constraint" else obstacles)
+    return ", ".join(words) or NOTHING
 
 
 def _other(spec: Mapping[str, Any]) -> str:
@@ -135,13 +175,13 @@ def _other(spec: Mapping[str, Any]) -> str:
 
 
 def _by_group(groups: Sequence[str], texts: Sequence[str]) -> str:
-    """Return a text that may differ between groups, with the groups' names where it does."""
+    """Return a text that may differ between groups, after the groups' names where it does."""
     found: dict[str, list[str]] = {}
     for group, text in zip(groups, texts, strict=True):
         found.setdefault(text, []).append(group)
     if len(found) == 1:
         return texts[0]
-    return "; ".join(f"{'nothing' if text == NOTHING else text} on {', '.join(names)}" for text, names in found.items())
+    return "; ".join(f"on {', '.join(names)}: {'nothing' if text == NOTHING else text}" for text, names in found.items())
 
 
 def _grids(problems: Sequence[PlannedProblem]) -> str:
@@ -170,11 +210,10 @@ def _representation(spec: Mapping[str, Any]) -> str:
 
 def _obstacles(spec: Mapping[str, Any]) -> str:
     """Return how obstacles are treated, with the numbers that belong to it."""
-    limit = "" if spec["potential_limit"] is None else f" {spec['potential_limit']:g}"
-    penalty = "" if spec["penalty"] is None else f"{spec['penalty']:g} a cell"
-    if spec["obstacles"] == "penalty":
-        return f"penalty of {penalty}"
-    return f"{spec['obstacles']}{limit}{f', penalty of {penalty}' if penalty else ''}"
+    if spec["obstacles"] == "constraint":
+        return "constraint"
+    penalty = f"penalty of {spec['penalty']:g} a cell"
+    return penalty if spec["obstacles"] == "penalty" else f"vulnerability at most {spec['potential_limit']:g}, {penalty}"
 
 
 def _query(spec: Mapping[str, Any]) -> str:
@@ -194,9 +233,9 @@ def _ranges(numbers: Sequence[int]) -> str:
 
 
 def _listed(settings: Mapping[str, Any]) -> str:
-    """Return settings in one line, ``penalty 1; representation cells``."""
+    """Return settings in one line, ``rate 0.5, n_neighbors 7``."""
     parts = []
     for key, value in settings.items():
         shown = f"{value:g}" if isinstance(value, float) else "none" if value is None else str(value)
         parts.append(f"{key} {shown}")
-    return "; ".join(parts)
+    return ", ".join(parts)

@@ -13,10 +13,12 @@ from numpy.typing import ArrayLike
 
 from pymoo_gridpath.study.report.results import Results
 
-#: How an axis is scaled, for captions.
-SCALE_SENTENCE = (
-    "An axis of ratios stretches what is near 1: it is linear in arsinh((1 - ratio) / u), that is, logarithmic in what is "
-    "missing to 1 where that is more than u, with u what is missing of the best median below 1, but at least 0.0001."
+#: How an axis is scaled, for the definitions.
+SCALE_DEFINITION = (
+    "Axes of hypervolume ratios: linear in arsinh((1 - ratio) / u), that is, nearly linear where less than u is missing to 1, "
+    "and logarithmic in what is missing to 1 where that is more. Each panel has its u, which the caption states: of the "
+    "algorithms' median final ratios, over all finished runs on the panel's problems, the best that is below 1 is taken, and u "
+    "is what it misses to 1, rounded to one significant digit, at least 0.0001; u is 1 where no median is below 1."
 )
 
 # The least that is told apart near 1, as in the tables, and what passes for nothing.
@@ -41,6 +43,14 @@ def stretch_unit(results: Results, problems: Sequence[int]) -> float:
     shortfalls = [1.0 - float(np.median(values)) for values in samples if len(values)]
     least = min((shortfall for shortfall in shortfalls if shortfall > _NONE), default=1.0)
     return float(f"{min(max(least, _FINEST), 1.0):.0e}")
+
+
+def scale_sentence(results: Results, panels: Sequence[Sequence[int]]) -> str:
+    """Return how the axes of panels are scaled, each on its problems, for captions."""
+    units = [f"{stretch_unit(results, problems):g}" for problems in panels]
+    if len(set(units)) == 1:
+        return f"The axis of ratios stretches what is near 1 (see Definitions, u = {units[0]})."
+    return f"The axes of ratios stretch what is near 1 (see Definitions, u = {', '.join(units)} from panel to panel)."
 
 
 def stretched(ratios: ArrayLike, unit: float) -> np.ndarray:

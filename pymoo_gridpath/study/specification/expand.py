@@ -84,7 +84,7 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
             problem = refuse(study, where, about, build_problem, content, planned.grid)
             made = refuse(study, where, about, build_algorithm, settled, problem)
             _check_parameters(study, k, made, problem.n_obj, settled)
-            _check_promises(study, k, problem, settled)
+            _check_promises(study, k, problem, settled, made)
             if not is_exact(settled):
                 pairs.append(Pair(content, settled, planned.grid, planned.label, k))
             if content["representation"] in _monotone() - checked:
@@ -122,13 +122,19 @@ def _check_parameters(study: Study, k: int, made: Any, n_obj: int, algorithm: Ma
             f"n_neighbors is {given['n_neighbors']}, expected at most the {len(made.ref_dirs)} reference directions",
             (*where, "n_neighbors"),
         )
+    decided = [key for key in ("ref_dirs", "pop_per_ref_point") if key in given]
+    if decided and study.algorithms[k].pop_size is not None and made.pop_size != algorithm["pop_size"]:
+        raise study.error(
+            f"pop_size is {algorithm['pop_size']}, but {decided[0]} makes it {made.pop_size}; leave pop_size out",
+            ("algorithms", k, "pop_size"),
+        )
     if "weights" in given and len(given["weights"]) != n_obj:
         raise study.error(
             f"weights has {len(given['weights'])} entries, expected one for each of the {n_obj} objectives", (*where, "weights")
         )
 
 
-def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any]) -> None:
+def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any], made: Any) -> None:
     """Refuse what would run, but not as a study promises."""
     row = CAPABILITIES.get(algorithm.get("algorithm", ""))
     if row is not None and problem.has_constraints() and not row.reproducible_constrained:
@@ -138,9 +144,9 @@ def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any])
             ("algorithms", k),
         )
     most = study.budget.get("evaluations")
-    if most is not None and most < algorithm.get("pop_size", 0):
+    if most is not None and not is_exact(algorithm) and most < made.pop_size:
         raise study.error(
-            f"pop_size is {algorithm['pop_size']}, expected at most the {most} evaluations of the budget",
+            f"pop_size is {made.pop_size}, expected at most the {most} evaluations of the budget",
             ("algorithms", k, "pop_size"),
         )
 

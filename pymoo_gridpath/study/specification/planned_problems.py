@@ -132,6 +132,8 @@ def _known_query(path: str):
 
 def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: OccupancyGrid) -> list[tuple[str, Cell, Cell]]:
     found = refuse(study, (*place_of(k), "scen"), "", read_scen, path, grid)
+    if not found:
+        raise study.error(f"{spec.scen} holds no query", (*place_of(k), "scen"))
     wanted = spec.queries or QueryRange()
     if isinstance(wanted, QueryRange):
         last = len(found) - 1 if wanted.last is None else wanted.last
