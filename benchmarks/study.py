@@ -262,7 +262,7 @@ def overhead(folder: Path) -> None:
 
 
 def spent_beside(plan: Plan, folder: Path) -> float:
-    """Return the time of runs outside of their algorithms as a share of that inside, measured at once and so with little noise."""
+    """Return the time of runs outside of their algorithms as a share of that inside, both of the same runs."""
     inside = {"next": 0.0, "_update": 0.0}
 
     def timed(cls: type, name: str) -> Callable:
