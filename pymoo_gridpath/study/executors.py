@@ -88,6 +88,7 @@ class LocalProcesses(StudyExecutor):
         self._workers: list = []
 
     def submit(self, fn: Callable, /, *args, **kwargs) -> Future:
+        """Have a function called in one of the processes, and return the future of what it returns."""
         if self._pool is None:
             self._pool = self._started()
         return self._pool.submit(fn, *args, **kwargs)
@@ -105,6 +106,7 @@ class LocalProcesses(StudyExecutor):
             pool.shutdown(wait=False, cancel_futures=True)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the processes, by default once they have done what was submitted."""
         if self._pool is not None:
             self._pool.shutdown(wait, cancel_futures=cancel_futures)
 
