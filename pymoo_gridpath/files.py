@@ -39,9 +39,8 @@ def replace_file(path: Path, data: bytes) -> None:
         If the file cannot be written.
     """
     temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.part")
-    file = open(temporary, "xb")  # noqa: SIM115
     try:
-        with file:
+        with open(temporary, "xb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
