@@ -68,8 +68,8 @@ class ArrayPopulation(Population):
 def _read(individuals: list, key: str) -> list:
     if key == "FEAS":
         # Asked for every generation, and slow one by one.
-        limits = [[individual.config.get("cv_eps", 0.0)] for individual in individuals]
-        return list(np.array(_read(individuals, "CV")).reshape(-1, 1) <= np.array(limits).reshape(-1, 1))
+        limits = [individual.config.get("cv_eps", 0.0) for individual in individuals]
+        return list(np.array(_read(individuals, "CV")).reshape(-1, 1) <= np.array(limits)[:, None])
     if individuals and hasattr(type(individuals[0]), key):
         return list(map(attrgetter(key), individuals))
     # What others have set on an individual itself goes before what survival and evaluation keep in its data.
@@ -87,4 +87,5 @@ def _one_each(values, n: int) -> list:
             return list(values)
         if values.size == 0:
             return [values[0].copy()] * n  # such as G of a problem without constraints
+        return [row.copy() for row in values]
     return [value.copy() if isinstance(value, np.ndarray) and value.base is not None else value for value in values]

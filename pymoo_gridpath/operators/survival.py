@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from pymoo.core.survival import Survival
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
+from pymoo.operators.survival.rank_and_crowding.metrics import FunctionalDiversity, calc_crowding_distance
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 from pymoo.util.randomized_argsort import randomized_argsort
 
@@ -71,20 +74,28 @@ class ArrayRankAndCrowding(ArraySurvival, RankAndCrowding):
     """
 
     def _do(self, problem, pop, *args, random_state=None, n_survive=None, **kwargs):
-        F, missing = pop.get("F").astype(float), len(pop) if n_survive is None else n_survive
-        fronts = self.nds.do(F, n_stop_if_ranked=missing)
-        survivors, crowding = [], []
-        for front in fronts:
-            n_remove = max(len(front) - missing, 0)
-            crowding.append(self.crowding_func.do(F[front], n_remove=n_remove))
-            if n_remove:
-                order = randomized_argsort(crowding[-1], order="descending", method="numpy", random_state=random_state)
-                front = front[order[:-n_remove]]
-            survivors.append(front)
-            missing -= len(front)
+        F, n_survive = pop.get("F").astype(float), len(pop) if n_survive is None else n_survive
+        fronts = self.nds.do(F, n_stop_if_ranked=n_survive)
+        ranked = np.concatenate(fronts)
         rank = np.repeat(np.arange(len(fronts)), [len(front) for front in fronts])
-        pop[np.concatenate(fronts)].set(rank=rank, crowding=np.concatenate(crowding))
-        return pop[np.concatenate(survivors)]
+        n_remove = max(len(ranked) - n_survive, 0)
+        crowding = self._crowding(F[ranked], rank, n_remove)
+        pop[ranked].set(rank=rank, crowding=crowding)
+        if n_remove:
+            n_last = len(fronts[-1])
+            order = randomized_argsort(crowding[-n_last:], order="descending", method="numpy", random_state=random_state)
+            ranked = np.concatenate([ranked[:-n_last], fronts[-1][order[:-n_remove]]])
+        return pop[ranked]
+
+    def _crowding(self, F, rank, n_remove):
+        """Return what the crowding function says of each front; points lie front after front."""
+        function: Any = self.crowding_func
+        plain = type(function) is FunctionalDiversity and not function.filter_out_duplicates
+        if plain and function.function is calc_crowding_distance:
+            return crowding_distances(F, rank, as_pymoo=True)
+        fronts = np.split(F, np.flatnonzero(np.diff(rank)) + 1)
+        parts: list[Any] = [*map(function.do, fronts[:-1]), function.do(fronts[-1], n_remove=n_remove)]
+        return np.concatenate(parts)
 
 
 def repeats(F: np.ndarray, turn: np.ndarray) -> np.ndarray:
@@ -95,7 +106,7 @@ def repeats(F: np.ndarray, turn: np.ndarray) -> np.ndarray:
     return repeat
 
 
-def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:
+def crowding_distances(F: np.ndarray, rank: np.ndarray, as_pymoo: bool = False) -> np.ndarray:
     """Return the crowding distance of each point within its front, for all fronts at once.
 
     Parameters
@@ -104,6 +115,8 @@ def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:
         Objectives.
     rank : numpy.ndarray of int, shape (N,)
         The front of each point.
+    as_pymoo : bool, default False
+        Whether to round as pymoo does, which adds the distances to both neighbours after division by the range.
 
     Returns
     -------
@@ -117,8 +130,8 @@ def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:
     K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, "A fast and elitist multiobjective genetic algorithm: NSGA-II", IEEE
     Transactions on Evolutionary Computation 6(2), 2002, section III.B.
     """
-    total = np.zeros(len(F))
-    for values in F.T:
+    distance = np.empty(F.shape)
+    for k, values in enumerate(F.T):
         order = np.lexsort((values, rank))
         value, front = values[order], rank[order]
         first = np.concatenate([[True], front[1:] != front[:-1]])
@@ -126,10 +139,17 @@ def crowding_distances(F: np.ndarray, rank: np.ndarray) -> np.ndarray:
         # Position of the front's first and last point, for every point.
         group = np.cumsum(first) - 1
         spread = value[last][group] - value[first][group]
-        gap = np.zeros(len(F))
-        gap[1:-1] = value[2:] - value[:-2]
-        distance = np.divide(gap, spread, out=np.zeros(len(F)), where=spread > 0)
-        distance[(first | last) & (spread > 0)] = np.inf
-        total[order] += distance
+        spread[spread == 0] = np.nan
+        if as_pymoo:
+            step = np.diff(value, prepend=-np.inf, append=np.inf)
+            gaps = np.array([step[:-1], step[1:]])
+            gaps[0, first] = gaps[1, last] = np.inf
+        else:
+            gaps = np.full((1, len(F)), np.inf)
+            gaps[0, 1:-1] = value[2:] - value[:-2]
+            gaps[0, first | last] = np.inf
+        shares = gaps / spread
+        shares[np.isnan(shares)] = 0.0
+        distance[order, k] = shares.sum(axis=0)
     size = np.bincount(rank)[rank]
-    return np.where(size <= 2, np.inf, total / F.shape[1])
+    return np.where(size <= 2, np.inf, distance.sum(axis=1) / F.shape[1])

@@ -19,6 +19,7 @@ from pymoo.core.problem import ElementwiseProblem
 from pymoo.core.repair import NoRepair
 from pymoo.operators.sampling.rnd import IntegerRandomSampling
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
+from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.optimize import minimize
 
 from pymoo_gridpath.algorithms import make_algorithm
@@ -126,11 +127,13 @@ def survive(survival, pop, seed, n_survive):
     return survivors, state.random()
 
 
+@pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning", "ignore:divide by zero:RuntimeWarning")
+@pytest.mark.parametrize("function", ["cd", "ce", "mnn", calc_crowding_distance])
 @given(SEEDS, st.sampled_from([1, 2, 3]), st.sampled_from([0.0, 0.4, 1.0]), st.integers(1, 40))
-def test_rank_and_crowding_is_pymoos_with_the_same_draws(seed, n_obj, infeasible, n_survive):
+def test_rank_and_crowding_is_pymoos_with_the_same_draws(function, seed, n_obj, infeasible, n_survive):
     pop = population(np.random.default_rng(seed), n_obj=n_obj, infeasible=infeasible)
     (stock, after), (fast, fast_after) = (
-        survive(survival, pop, seed, n_survive) for survival in (RankAndCrowding(), ArrayRankAndCrowding())
+        survive(kind(crowding_func=function), pop, seed, n_survive) for kind in (RankAndCrowding, ArrayRankAndCrowding)
     )
     assert names(fast) == names(stock) and fast_after == after and isinstance(fast, ArrayPopulation)
     for key in ("rank", "crowding"):

@@ -111,9 +111,11 @@ def test_crowding_of_all_fronts_equals_pymoo_front_by_front(seed, n, n_obj):
     # Distinct values, since among equal ones pymoo's order is one of several.
     F = rng.permuted(np.tile(np.arange(n, dtype=float), (n_obj, 1)), axis=1).T * rng.random(n_obj)
     rank = rng.integers(0, 3, n)
-    ours = crowding_distances(F, rank)
+    ours, to_the_bit = crowding_distances(F, rank), crowding_distances(F, rank, as_pymoo=True)
     for k in np.unique(rank):
-        assert ours[rank == k] == pytest.approx(get_crowding_function("cd").do(F[rank == k]))
+        pymoos = get_crowding_function("cd").do(F[rank == k])
+        assert ours[rank == k] == pytest.approx(pymoos)
+        assert np.array_equal(to_the_bit[rank == k], pymoos)
 
 
 def test_crowding_ignores_an_objective_that_is_constant():
