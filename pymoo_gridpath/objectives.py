@@ -16,8 +16,8 @@ from pymoo_gridpath.paths import TURN_UNIT
 class Objective(ABC):
     """A quantity of a path to be minimised.
 
-    Subclass it to add one of your own: set `name`, and compute from the paths, or from the sum of a field over the visited
-    cells if `field` returns one.
+    Subclass it to add one of your own: set `name` and `label`, and compute from the paths, or from the sum of a field over the
+    visited cells if `field` returns one. Objectives with a field that is nowhere negative have an exact front.
 
     Attributes
     ----------
@@ -27,6 +27,23 @@ class Objective(ABC):
         What an axis of a figure says, with the unit.
     penalty_unit : float
         What a penalty of 1 adds to it: 1, or the objective's own step where it counts in larger ones.
+
+    Examples
+    --------
+    >>> class Mud(Objective):
+    ...     name, label = "mud", "Mud on the way"
+    ...
+    ...     def field(self, grid):
+    ...         cost = np.zeros(grid.shape)
+    ...         cost[2:5, :4] = 1.5  # rows y, columns x
+    ...         return cost
+    ...
+    ...     def __call__(self, paths, sums):
+    ...         return paths.total(sums)
+    >>> from pymoo_gridpath import GridPathProblem
+    >>> problem = GridPathProblem(OccupancyGrid(np.zeros((8, 8))), (0, 0), (0, 7), "cells", objectives=["length", Mud()])
+    >>> problem.pareto_front().round(2).tolist()
+    [[7.0, 4.5], [10.9, 3.0], [11.49, 1.5], [12.07, 0.0]]
     """
 
     name: str
@@ -46,7 +63,7 @@ class Objective(ABC):
         paths : ColumnPaths or CellPaths
             N paths.
         sums : numpy.ndarray or None
-            What the representation prepared from `field`.
+            What the representation prepared from `field`, for ``paths.total(sums)``; None if that is None.
 
         Returns
         -------
@@ -142,6 +159,8 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
             item = OBJECTIVES[item]()
         elif not isinstance(item, Objective):
             raise GridPathError(f"objective {item!r} is neither a name nor an Objective")
+        if not isinstance(getattr(item, "name", None), str):
+            raise GridPathError(f"the objective {type(item).__name__} has no name, expected a text as its attribute 'name'")
         made.append(item)
     names = [item.name for item in made]
     if not names or len(set(names)) < len(names):

@@ -110,8 +110,9 @@ def find_capability(name: str) -> Capability:
     rows = {_key(row.name): row for row in CAPABILITIES.values()}
     key = _key(name)
     if key not in rows:
-        near = difflib.get_close_matches(key, rows, n=1, cutoff=0.6)
-        hint = f"did you mean {rows[near[0]].name!r}?" if near else f"expected one of {', '.join(CAPABILITIES)}"
+        names = {key: row.name for key, row in rows.items()} | {"exact": "exact"}
+        near = difflib.get_close_matches(key, names, n=1, cutoff=0.6)
+        hint = f"did you mean {names[near[0]]!r}?" if near else f"expected one of {', '.join([*CAPABILITIES, 'exact'])}"
         raise CapabilityError(f"there is no algorithm {name!r}; {hint}")
     return rows[key]
 
@@ -145,9 +146,9 @@ def build(
     **kwargs,
 ) -> Algorithm:
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
-    least = _least_pop_size(row, kwargs)
-    if pop_size < least:
-        raise CapabilityError(f"pop_size is {pop_size}, expected at least {least} for {row.name}")
+    _check_number(row, "pop_size", pop_size, _least_pop_size(row, kwargs))
+    if kwargs.get("n_offsprings") is not None:
+        _check_number(row, "n_offsprings", kwargs["n_offsprings"], 1)
     cls = _class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     # These two classes need not be told: smoothness is an argument of this function.
@@ -156,7 +157,7 @@ def build(
     if operators is not None:
         _arguments.check("operators", operators, dict.fromkeys(_OPERATORS))
         given.update(_fitted(row, operators, accepted))
-    _arguments.check(row.name, given, accepted)
+    _arguments.check(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
     settings = _arguments.fresh_defaults(accepted)
     settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
     settings |= _smoothness(row, problem, smoothness, given)
@@ -185,6 +186,11 @@ def build(
     if isinstance(algorithm.__dict__.get("mating"), VariantDE):
         algorithm.mating = _whole_number_mating(algorithm)
     return algorithm
+
+
+def _check_number(row: Capability, name: str, value, least: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise CapabilityError(f"{name} is {value!r}, expected a whole number of at least {least} for {row.name}")
 
 
 def _least_pop_size(row: Capability, given: Mapping[str, Any]) -> int:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath.exact import ExactResult
 from pymoo_gridpath.grid import OccupancyGrid
 
 
@@ -50,7 +51,7 @@ def describe_problem(problem) -> dict:
 def describe_run(result) -> dict:
     """Return the algorithm of a pymoo Result, its parameters, operators, generations, evaluations and seed.
 
-    What the Result does not tell is None.
+    What the Result does not tell is None. Of an exact search, also whether the front is complete, how it ended, and its budget.
     """
     algorithm = getattr(result, "algorithm", None)
     iterations = getattr(algorithm, "n_iter", None)
@@ -70,12 +71,21 @@ def describe_run(result) -> dict:
         "generations": None if iterations is None else iterations - 1,
         "evaluations": getattr(getattr(algorithm, "evaluator", None), "n_eval", None),
         "seed": getattr(algorithm, "seed", None),
+        **_search(algorithm),
         "operators": {
             role: {"name": type(operator).__name__, **_scalars(operator)}
             for role, operator in operators.items()
             if operator is not None
         },
     }
+
+
+def _search(algorithm) -> dict:
+    """Return how an exact search ended and the budget that it had, nothing of other algorithms."""
+    found = getattr(algorithm, "found", None)
+    if not isinstance(found, ExactResult):
+        return {}
+    return {"complete": found.complete, "message": found.message, "budget": _scalars(getattr(algorithm, "budget", None))}
 
 
 def plain(value):

@@ -339,9 +339,8 @@ def _genes(run, number: int) -> np.ndarray:
     populations = [getattr(run, source, None) for source in ("opt", "pop")]
     found = [np.atleast_2d(population.get("X")) for population in populations if population is not None and len(population)]
     if not found:
-        raise GridPathError(
-            f"Result {number} holds no paths: its optimum and its population are empty, expected a finished run"
-        )
+        why = getattr(run, "message", None) or "its optimum and its population are empty, expected a finished run"
+        raise GridPathError(f"Result {number} holds no paths: {why}")
     return np.concatenate(found)
 
 

@@ -56,7 +56,7 @@ class Budget:
     Raises
     ------
     GridPathError
-        If one of the numbers is negative or none.
+        If one of them is no number, or negative.
     """
 
     max_seconds: float | None = None

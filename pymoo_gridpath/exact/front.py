@@ -14,7 +14,7 @@ from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import front_of_two
 from pymoo_gridpath.objectives import Length, Turn
 from pymoo_gridpath.search import Moves
-from pymoo_gridpath.search.sequences import Sequences
+from pymoo_gridpath.search.sequences import Sequences, cut_loops
 
 # Lengths of paths across more cells could overflow.
 _MOST_CELLS = 2**24
@@ -46,7 +46,8 @@ class ExactResult:
         unless the time was too short even for these, and the best paths between them that were found, which may lie off the
         front; of three a part of the front.
     complete : bool
-        Whether this is the whole front.
+        Whether this is the whole front. If not, a budget was used up, or the representation cannot code some of its paths
+        (`CellSequence` with too small ``max_cells``).
     message : str
         How the search ended.
     n_labels, n_bytes : int
@@ -82,8 +83,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     CapabilityError
         If there are more than three objectives or one does not add up, see `integer_costs`.
     GridPathError
-        If the representation cannot code a path of the front (`CellSequence` with too small ``max_cells``), or a score is not
-        the sum that its field says.
+        If a score is not the sum that its field says.
 
     Examples
     --------
@@ -101,14 +101,21 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     meter = Meter(budget or Budget())
     parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter, set())
     seconds = meter.elapsed
-    X, F = _scored(problem, parts)
+    X, F, too_long = _scored(problem, parts)
     if meter.message:
         message = f"ended early, {meter.message}; {len(F)} paths found"
+    elif len(too_long):
+        message = (
+            f"left out {len(too_long)} points, whose paths visit up to {too_long.max()} cells, expected at most "
+            f"{problem.representation.max_cells}, the max_cells of the representation; give CellSequence a larger one; "
+            f"{len(F)} points found"
+        )
     elif len(F):
         message = f"all {len(F)} points found"
     else:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
-    return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds)
+    complete = not meter.message and len(too_long) == 0
+    return ExactResult(X, F, complete, message, meter.n_labels, meter.n_bytes, seconds)
 
 
 def _place(objective) -> int:
@@ -175,14 +182,25 @@ def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) ->
     return usable & (field <= dearest[cheap].max()) if cheap.any() else None
 
 
-def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray]:
-    """Return genes and objectives of paths in ascending order, without those that exceed a potential limit."""
+def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return genes and objectives of paths in ascending order, without those that exceed a potential limit.
+
+    Paths too long for the representation are left out; the numbers of their cells come third.
+    """
     paths = [path for part in parts for path in part.paths]
     offsets = np.cumsum([0, *(len(path) for path in paths)])
     cells = np.concatenate(paths) if paths else np.empty(0, dtype=np.int64)
-    X = problem.representation.from_sequences(Sequences(cells, offsets))
-    F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
     expected, off = (np.concatenate([getattr(part, name) for part in parts]) for name in ("F", "off"))
+    sequences, too_long = Sequences(cells, offsets), np.empty(0, dtype=np.int64)
+    fits = problem.representation.fits(sequences)
+    if not fits.all():
+        fits |= problem.representation.fits(cut_loops(sequences, problem.representation.moves.n_cells))
+        k = problem.objective_names.index("vulnerability") if problem.obstacles == "limit" else None
+        wanted = ~fits if k is None else ~fits & (expected[:, k] <= problem.potential_limit * (1 + _SAME))
+        too_long, sequences = sequences.lengths[wanted], sequences.take(fits)
+        expected, off = expected[fits], off[fits]
+    X = problem.representation.from_sequences(sequences)
+    F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
     close = np.abs(F - expected) <= _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
     if not close.all():
         wrong = problem.objective_names[np.flatnonzero(~close.all(axis=0))[0]]
@@ -200,7 +218,7 @@ def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray]:
     if problem.obstacles == "limit":
         k = problem.objective_names.index("vulnerability")
         keep = keep[F[keep, k] <= problem.potential_limit]
-    return X[keep], F[keep]
+    return X[keep], F[keep], too_long
 
 
 def _ranks(values: np.ndarray) -> np.ndarray:

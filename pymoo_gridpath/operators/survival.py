@@ -76,6 +76,8 @@ class ArrayRankAndCrowding(ArraySurvival, RankAndCrowding):
     def _do(self, problem, pop, *args, random_state=None, n_survive=None, **kwargs):
         F, n_survive = pop.get("F").astype(float), len(pop) if n_survive is None else n_survive
         fronts = self.nds.do(F, n_stop_if_ranked=n_survive)
+        # A sorting of the caller's own may rank more fronts than are needed.
+        fronts = fronts[: np.searchsorted(np.cumsum([len(front) for front in fronts]), n_survive) + 1]
         ranked = np.concatenate(fronts)
         rank = np.repeat(np.arange(len(fronts)), [len(front) for front in fronts])
         n_remove = max(len(ranked) - n_survive, 0)

@@ -13,7 +13,7 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.objectives import Objective, make_objectives
+from pymoo_gridpath.objectives import Objective, Turn, make_objectives
 from pymoo_gridpath.representations import CellSequence, Representation, make_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]
@@ -125,8 +125,10 @@ class GridPathProblem(Problem):
         self._check_obstacles()
         fields = [_checked(objective, grid) for objective in self.objectives]
         if representation == CellSequence.name and axis == "auto":
-            # Room for the safest paths in the fields of these objectives.
-            representation = CellSequence(grid, self.start, self.goal, fields=[field for field in fields if field is not None])
+            # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
+            costs = [field for field in fields if field is not None]
+            spare = 2.0 if len(costs) > 1 or any(isinstance(objective, Turn) for objective in self.objectives) else 1.0
+            representation = CellSequence(grid, self.start, self.goal, fields=costs, spare=spare)
         if isinstance(representation, str):
             representation = make_representation(representation, grid, self.start, self.goal, axis)
         else:
@@ -176,6 +178,21 @@ class GridPathProblem(Problem):
 
     # -- the exact front ----------------------------------------------------------------------------------------------
 
+    def pareto_front(self, *args, **kwargs):
+        """Return the exact front, shape (N, n_obj), or None, see Notes; ``max_seconds`` (default 60) may be given."""
+        return self._unless_none("pareto_front", *args, **kwargs)
+
+    def pareto_set(self, *args, **kwargs):
+        """Return a path for each point of the exact front, shape (N, n_var), or None, as `pareto_front`."""
+        return self._unless_none("pareto_set", *args, **kwargs)
+
+    def _unless_none(self, name: str, *args, **kwargs):
+        found = getattr(super(), name)(*args, **kwargs)
+        if found is None:
+            # pymoo would keep that, however much more time the next call gives.
+            self.__dict__["cache"].pop(name, None)
+        return found
+
     def _calc_pareto_front(self, max_seconds: float = PARETO_SECONDS):
         found = self._exact(max_seconds)
         return None if found is None else found.F
@@ -187,17 +204,18 @@ class GridPathProblem(Problem):
     def _exact(self, max_seconds: float) -> ExactResult | None:
         """Return the exact front, kept for the next call, or None if there is none or the time is too short."""
         if self._front is None:
+            budget = Budget(max_seconds=max_seconds)
             try:
-                found = exact_front(self, Budget(max_seconds=max_seconds))
+                found = exact_front(self, budget)
             except CapabilityError:
                 return None
             except GridPathError as error:
-                warnings.warn(f"no Pareto front: {error}", stacklevel=5)
+                warnings.warn(f"no Pareto front: {error}", stacklevel=7)
                 return None
             if not found.complete:
                 warnings.warn(
-                    f"no Pareto front: the search {found.message}; ask for pareto_front(max_seconds=..., use_cache=False)",
-                    stacklevel=5,
+                    f"no Pareto front: the search {found.message} (max_seconds={max_seconds:g})",
+                    stacklevel=7,
                 )
                 return None
             self._front = found
@@ -211,7 +229,14 @@ class GridPathProblem(Problem):
 
     def score(self, paths) -> np.ndarray:
         """Return the plain objectives of paths, without any penalty, shape (N, n_obj)."""
-        return np.column_stack([f(paths, sums) for f, sums in zip(self.objectives, self._sums, strict=True)])
+        F = [f(paths, sums) for f, sums in zip(self.objectives, self._sums, strict=True)]
+        for objective, values in zip(self.objectives, F, strict=True):
+            if np.shape(values) != (len(paths),):
+                raise GridPathError(
+                    f"the objective {objective.name!r} returned values of shape {np.shape(values)} for {len(paths)} paths, "
+                    f"expected one a path"
+                )
+        return np.column_stack(F)
 
     def _evaluate(self, x, out, *args, **kwargs):
         # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
@@ -237,8 +262,20 @@ class GridPathProblem(Problem):
 
 def _checked(objective: Objective, grid: OccupancyGrid) -> np.ndarray | None:
     """Return the field of an objective, zero in occupied cells if it is not finite there, or None if it has none."""
-    field = objective.field(grid)
-    if field is None or np.isfinite(field).all():
+    given = objective.field(grid)
+    if given is None:
+        return None
+    try:
+        field = np.asarray(given)
+    except ValueError:  # rows of different lengths
+        field = np.asarray(None)
+    if field.shape != grid.shape or field.dtype.kind not in "biuf":
+        what = f"{field.dtype} of shape {field.shape}" if field.dtype.kind != "O" else type(given).__name__
+        raise GridPathError(
+            f"the field of the objective {objective.name!r} is {what}, expected numbers of shape {grid.shape}, the (height, "
+            f"width) of the grid"
+        )
+    if np.isfinite(field).all():
         return field
     if not np.isfinite(field[~grid.occupied]).all():
         y, x = np.argwhere(~np.isfinite(field) & ~grid.occupied)[0]

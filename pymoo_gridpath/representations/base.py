@@ -68,6 +68,10 @@ class Representation(ABC):
             If one of them has no code.
         """
 
+    def fits(self, sequences: Sequences) -> np.ndarray:
+        """Return which paths are no longer than a row can code, bool, shape (N,); all, unless rows have limited room."""
+        return np.ones(len(sequences.lengths), dtype=bool)
+
     def to_sequences(self, X: np.ndarray) -> Sequences:
         """Return the cells that the decoded paths visit, the inverse of `from_sequences`.
 

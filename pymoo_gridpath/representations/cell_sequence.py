@@ -46,13 +46,16 @@ class CellSequence(Representation):
         Costs of cells, the sums of which paths are to be scored by; there is room then for the cheapest paths in each, rather
         than for the safest in the default potential. A problem that is given the representation by name passes those of its
         objectives.
+    spare : float, default 1
+        Factor on the default of ``max_cells``, 1 or more. Paths that turn little, and compromises between several fields, may
+        be longer than the cheapest ones; a problem with such objectives that is given the representation by name passes 2.
 
     Raises
     ------
     GridError, UnreachableError
         If start or goal is no free cell, both are the same, or no path joins them.
     GridPathError
-        If max_cells is no whole number, or too small for a shortest path.
+        If max_cells is no whole number, or too small for a shortest path, or spare is less than 1.
 
     Attributes
     ----------
@@ -72,10 +75,20 @@ class CellSequence(Representation):
     name = "cells"
     vtype = int
 
-    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], max_cells: int | None = None, fields=()):
+    def __init__(
+        self,
+        grid: OccupancyGrid,
+        start: Sequence[int],
+        goal: Sequence[int],
+        max_cells: int | None = None,
+        fields=(),
+        spare: float = 1.0,
+    ):
         self.grid = grid
         self.start, self.goal = grid.check_query(start, goal)
-        self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells, fields)
+        if not spare >= 1.0:
+            raise GridPathError(f"spare is {spare}, expected a factor of 1 or more")
+        self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells, fields, spare)
         self.n_var = self.max_cells
         self.xl = np.zeros(self.n_var, dtype=int)
         self.xu = np.full(self.n_var, self.moves.n_cells - 1)
@@ -133,8 +146,8 @@ class CellSequence(Representation):
         if fits.all():
             return self._padded(sequences)
         X = np.empty((len(fits), self.n_var), dtype=np.int64)
-        X[fits] = self._padded(_chosen(sequences, fits))
-        X[~fits] = self._padded(cut_loops(_chosen(sequences, ~fits), self.moves.n_cells))
+        X[fits] = self._padded(sequences.take(fits))
+        X[~fits] = self._padded(cut_loops(sequences.take(~fits), self.moves.n_cells))
         return X
 
     def _padded(self, sequences: Sequences) -> np.ndarray:
@@ -182,7 +195,7 @@ class CellSequence(Representation):
         return repaired
 
 
-def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fields) -> int:
+def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fields, spare: float) -> int:
     """Return ``max_cells``, checked, or its default."""
     graph = grid.move_graph()
     _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
@@ -195,7 +208,7 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
         reachable = np.count_nonzero(grid.regions == grid.regions.flat[start])
         fields = [np.maximum(field, 0.0) for field in fields] or [obstacle_potential(grid)]
         safest = max(1 + math.floor(_safest_length(graph, field.ravel(), start, goal) + 1e-6) for field in fields)
-        return min(max(safest, math.ceil(1.5 * least) + 8), int(reachable))
+        return min(math.ceil(spare * max(safest, math.ceil(1.5 * least) + 8)), int(reachable))
     try:
         given = operator.index(max_cells)
     except TypeError:
@@ -217,9 +230,3 @@ def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal:
         needed = least[tail] + field[head] <= least[head] * (1 + 1e-12)
     steps = sparse.csr_array((graph.data[needed], (tail[needed], head[needed])), shape=graph.shape)
     return float(csgraph.dijkstra(steps, indices=start)[goal])
-
-
-def _chosen(sequences: Sequences, mask: np.ndarray) -> Sequences:
-    """Return some of the paths."""
-    lengths = sequences.lengths
-    return Sequences(sequences.cells[np.repeat(mask, lengths)], np.cumsum([0, *lengths[mask]]))

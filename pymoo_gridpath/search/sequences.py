@@ -37,6 +37,11 @@ class Sequences(NamedTuple):
         """Number of cells of each path, int64, shape (N,)."""
         return np.diff(self.offsets)
 
+    def take(self, chosen: np.ndarray) -> Sequences:
+        """Return some of the paths, by a bool for each, shape (N,)."""
+        lengths = self.lengths
+        return Sequences(self.cells[np.repeat(chosen, lengths)], np.cumsum([0, *lengths[chosen]]))
+
 
 def are_legal(sequences: Sequences, terrain: Terrain) -> np.ndarray:
     """Return whether each sequence is a path from the start to the goal by legal steps, bool, shape (N,)."""

@@ -21,6 +21,7 @@ from pymoo.operators.sampling.rnd import IntegerRandomSampling
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 from pymoo.operators.survival.rank_and_crowding.metrics import calc_crowding_distance
 from pymoo.optimize import minimize
+from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 
 from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
@@ -138,6 +139,19 @@ def test_rank_and_crowding_is_pymoos_with_the_same_draws(function, seed, n_obj, 
     assert names(fast) == names(stock) and fast_after == after and isinstance(fast, ArrayPopulation)
     for key in ("rank", "crowding"):
         assert np.array_equal(fast.get(key), stock.get(key))
+
+
+def test_a_sorting_that_ranks_all_fronts_leaves_no_more_survivors():
+    class All(NonDominatedSorting):
+        def do(self, F, n_stop_if_ranked=None, **kwargs):
+            return super().do(F, **kwargs)
+
+    pop = population(np.random.default_rng(0), levels=100)
+    for n_survive in (1, 5, 17, 40):
+        stock, fast = (
+            names(survive(kind(nds=All()), pop, 0, n_survive)[0]) for kind in (RankAndCrowding, ArrayRankAndCrowding)
+        )
+        assert fast == stock and len(fast) == n_survive
 
 
 @pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning", "ignore:divide by zero:RuntimeWarning")

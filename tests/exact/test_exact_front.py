@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 import subprocess
@@ -14,6 +15,7 @@ from pymoo.optimize import minimize
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import ExactFront
 from pymoo_gridpath.decision import TradeOffSet
+from pymoo_gridpath.decision.export import json_text
 from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.exact import Budget, exact_front
 from pymoo_gridpath.maps import load_map, shipped_maps
@@ -130,11 +132,57 @@ def test_more_than_three_objectives_are_refused():
         exact_front(problem)
 
 
-def test_a_row_too_short_for_the_front_is_refused():
+def test_points_for_which_a_row_is_too_short_are_left_out():
     grid = OccupancyGrid(np.pad(np.ones((3, 3)), ((3, 3), (3, 3))))
-    problem = GridPathProblem(grid, (0, 4), (8, 4), representation=CellSequence(grid, (0, 4), (8, 4), max_cells=9))
-    with pytest.raises(GridPathError, match="max_cells"):
-        exact_front(problem)
+    roomy, coding = GridPathProblem(grid, (0, 4), (8, 4), "cells"), CellSequence(grid, (0, 4), (8, 4), max_cells=9)
+    problem, whole = GridPathProblem(grid, (0, 4), (8, 4), coding), exact_front(roomy)
+    found = exact_front(problem)
+    fits = np.array([len(path.cells) <= 9 for path in TradeOffSet.from_genes(roomy, whole.X)])
+    assert whole.complete and not found.complete and 0 < fits.sum() < len(fits)
+    np.testing.assert_array_equal(found.F, whole.F[fits])
+    assert f"left out {(~fits).sum()} points" in found.message and "expected at most 9, the max_cells" in found.message
+    with pytest.warns(UserWarning, match="left out"):
+        assert problem.pareto_front() is None
+    # What breaks the limit is no part of the front, whether it fits or not.
+    limited = GridPathProblem(grid, (0, 4), (8, 4), coding, obstacles="limit", potential_limit=whole.F[:, 1].min() / 2)
+    assert exact_front(limited).complete
+
+
+@pytest.mark.parametrize("objectives", [("length", "turn"), ("turn", "vulnerability"), ("length", "vulnerability", "turn")])
+def test_cells_have_room_for_paths_that_turn_little(objectives):
+    """A straight way around a slalom turns little, and is far longer than the shortest and the safest path."""
+    width, height = 21, 31
+    occupied = np.ones((height, width), dtype=bool)
+    occupied[:3] = False
+    for x in range(1, width - 1, 2):
+        occupied[slice(1, 3) if x // 2 % 2 else slice(0, 2), x] = True
+    occupied[:, [0, -1]] = occupied[-1] = False
+    problem = GridPathProblem(OccupancyGrid(occupied), (0, 0), (width - 1, 0), "cells", objectives)
+    front = problem.pareto_front()
+    assert front[:, objectives.index("turn")].min() == 180.0
+
+
+def test_a_front_that_took_too_long_is_looked_for_again():
+    problem = GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), "cells")
+    for look in (problem.pareto_front, problem.pareto_set):
+        with pytest.warns(UserWarning, match="time budget of 0 s"):
+            assert look(max_seconds=0) is None
+    assert len(problem.pareto_front()) == len(problem.pareto_set()) > 1
+    assert problem.pareto_front() is problem.pareto_front()
+    with pytest.raises(GridPathError, match="max_seconds is -1"):
+        GridPathProblem(random_grid(20, 4), (0, 0), (19, 19)).pareto_front(max_seconds=-1)
+
+
+def test_files_say_whether_a_front_is_complete():
+    problem = GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), "cells")
+    for max_labels, complete in ((None, True), (10, False)):
+        result = minimize(problem, ExactFront(max_labels=max_labels))
+        run = json.loads(json_text(TradeOffSet.from_results(result)))["settings"]["runs"][0]
+        assert run["complete"] is complete and run["message"] == result.message
+        assert run["budget"] == ({} if max_labels is None else {"max_labels": 10})
+    three = GridPathProblem(problem.grid, (0, 0), (19, 19), "cells", ("length", "vulnerability", "turn"))
+    with pytest.raises(GridPathError, match="Result 0 holds no paths: ended early, the budget of 10 labels is used up"):
+        TradeOffSet.from_results(minimize(three, ExactFront(max_labels=10)))
 
 
 def test_as_an_algorithm():
@@ -219,7 +267,7 @@ def test_a_pareto_front_that_takes_too_long_is_none_and_says_so():
     problem = GridPathProblem(random_grid(32, 6), (0, 0), (31, 31))
     with pytest.warns(UserWarning, match="no Pareto front: the search ended early, the time budget of 0 s is used up"):
         assert problem.pareto_front(max_seconds=0.0) is None
-    assert len(problem.pareto_front(use_cache=False)) > 5
+    assert len(problem.pareto_front()) > 5
 
 
 def test_memory_of_the_search_for_two_objectives_is_at_most_48_bytes_a_label():

@@ -96,6 +96,56 @@ class Cells(Objective):
         return paths.total(sums)
 
 
+class Own(Objective):
+    """An objective with any field and any values."""
+
+    name = label = "own"
+
+    def __init__(self, field, values=None):
+        self.values, self.cost = values, field
+
+    def field(self, grid):
+        return self.cost
+
+    def __call__(self, paths, sums):
+        return paths.total(sums) if self.values is None else self.values
+
+
+@pytest.mark.parametrize("representation", ["integer", "cells"])
+@pytest.mark.parametrize(
+    ("field", "what"),
+    [
+        (np.zeros((6, 8)), r"float64 of shape \(6, 8\)"),
+        (np.zeros(48), r"float64 of shape \(48,\)"),
+        (3.0, r"float64 of shape \(\)"),
+        (np.zeros((8, 6), dtype=complex), "complex128"),
+        ([["a"] * 6] * 8, "<U1"),
+        ([[1], [1, 2]], "list"),
+    ],
+)
+def test_fields_of_the_wrong_kind_are_refused(representation, field, what):
+    grid = OccupancyGrid(np.zeros((8, 6)), corner_cutting=True)
+    with pytest.raises(GridPathError, match=rf"the field of the objective 'own' is {what}.*, expected numbers of shape"):
+        GridPathProblem(grid, (0, 0), (5, 7), representation, objectives=["length", Own(field)])
+    lists = GridPathProblem(grid, (0, 0), (5, 7), representation, objectives=["length", Own([[1] * 6] * 8)])
+    assert lists.pareto_front()[0, 1] == 8
+
+
+def test_values_of_the_wrong_shape_are_refused():
+    grid = OccupancyGrid(np.zeros((8, 8)), corner_cutting=True)
+    problem = GridPathProblem(grid, (0, 0), (7, 7), objectives=["length", Own(None, values=np.zeros(2))])
+    with pytest.raises(GridPathError, match=r"'own' returned values of shape \(2,\) for 3 paths"):
+        problem.evaluate(np.zeros((3, 7), dtype=int))
+
+
+def test_an_objective_without_a_name_is_refused():
+    class Nameless(Own):
+        name = None
+
+    with pytest.raises(GridPathError, match="the objective Nameless has no name"):
+        GridPathProblem(OccupancyGrid(np.zeros((8, 8))), (0, 0), (7, 7), objectives=["length", Nameless(None)])
+
+
 def test_objectives_of_ones_own():
     problem = GridPathProblem(GRID, START, GOAL, objectives=[Cells(), Length(), Vulnerability(2.0)], obstacles="constraint")
     X = genes(problem)
