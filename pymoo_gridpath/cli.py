@@ -120,11 +120,9 @@ def _parser() -> argparse.ArgumentParser:
         default="auto",
         help="axis along which paths advance that never turn back (default: auto)",
     )
-    search.add_argument("--pop-size", type=_positive, default=200, metavar="N", help="population size (default: 200)")
-    search.add_argument("--generations", type=_positive, default=200, metavar="N", help="generations of a run (default: 200)")
-    search.add_argument(
-        "--runs", type=_positive, default=1, metavar="N", help="runs that are merged into one front (default: 1)"
-    )
+    search.add_argument("--pop-size", type=_positive, metavar="N", help="population size (default: 200)")
+    search.add_argument("--generations", type=_positive, metavar="N", help="generations of a run (default: 200)")
+    search.add_argument("--runs", type=_positive, metavar="N", help="runs that are merged into one front (default: 1)")
     search.add_argument(
         "--max-seconds", type=float, metavar="S", help="time for --algorithm exact; what it has found by then is kept"
     )
@@ -216,11 +214,14 @@ def _plan(arguments) -> int:
         axis=arguments.axis,
     )
     name = arguments.algorithm or ("nsga2" if problem.n_obj > 1 else "ga")
-    algorithm = make_algorithm(name, problem, pop_size=arguments.pop_size)
-    if isinstance(algorithm, ExactFront) and arguments.runs > 1:
-        raise GridPathError(
-            f"--runs is {arguments.runs}, expected 1 with --algorithm exact, which finds the same front each time"
-        )
+    algorithm = make_algorithm(name, problem, pop_size=arguments.pop_size or 200)
+    if isinstance(algorithm, ExactFront):
+        for option in ("pop_size", "generations", "runs"):
+            if getattr(arguments, option) is not None:
+                raise GridPathError(
+                    f"--{option.replace('_', '-')} is not for --algorithm exact, which finds the whole front at once"
+                )
+    arguments.generations, arguments.runs = arguments.generations or 200, arguments.runs or 1
     if arguments.max_seconds is not None and not isinstance(algorithm, ExactFront):
         raise GridPathError(f"--max-seconds is for --algorithm exact, not for {name}; expected --generations instead")
     if not COMPILED and _searches_in_kernels(problem, algorithm):

@@ -154,8 +154,8 @@ def test_compiling_is_said_where_the_search_is_compiled(tmp_path, free_map, opti
         yield
 
     monkeypatch.setattr(cli, "on_compiling", compiling)
-    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "-o", tmp_path / "out", *options]
-    assert main([*map(str, arguments)]) == 0
+    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", "-o", tmp_path / "out", *options]
+    assert main([*map(str, arguments), *([] if "exact" in options else FAST)]) == 0
     assert capsys.readouterr().err == (f"{COMPILING}\n" if said else "")
 
 
@@ -176,6 +176,10 @@ def test_compiling_is_said_where_the_search_is_compiled(tmp_path, free_map, opti
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--penalty", "5", "--obstacles", "constraint"], "penalty is for"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "3", "--algorithm", "gde3"], "at least 4"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "nsga9"], "did you mean"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "exakt"], "did you mean 'exact'"),
+        (["plan", "paper16", "--algorithm", "exact", "--generations", "5"], "--generations is not for --algorithm exact"),
+        (["plan", "paper16", "--algorithm", "exact", "--pop-size", "5"], "--pop-size is not for --algorithm exact"),
+        (["plan", "paper16", "--algorithm", "exact", "--runs", "2"], "--runs is not for --algorithm exact"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "MOPSO_CD"], "MOPSO_CD"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "invalid choice: 'real'"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "cells", "--axis", "y"], "advance along none"),

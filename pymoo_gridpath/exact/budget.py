@@ -56,7 +56,7 @@ class Budget:
     Raises
     ------
     GridPathError
-        If one of them is no number, or negative.
+        If one of the numbers is none, or negative, or ``watch`` cannot be called.
     """
 
     max_seconds: float | None = None
@@ -69,6 +69,8 @@ class Budget:
             value = getattr(self, name)
             if value is not None and not (isinstance(value, int | float | np.number) and value >= 0):
                 raise GridPathError(f"{name} is {value!r}, expected a number, zero or more")
+        if not (self.watch is None or callable(self.watch)):
+            raise GridPathError(f"watch is {self.watch!r}, expected a function of one argument, the Meter")
 
 
 class Meter:

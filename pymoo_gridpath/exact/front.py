@@ -83,7 +83,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     CapabilityError
         If there are more than three objectives or one does not add up, see `integer_costs`.
     GridPathError
-        If a score is not the sum that its field says.
+        If the problem is no path problem, or a score is not the sum that its field says.
 
     Examples
     --------
@@ -93,6 +93,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     >>> found.complete, found.F.round(2).tolist()
     (True, [[5.41, 0.66]])
     """
+    if not hasattr(problem, "representation"):
+        raise GridPathError(f"an exact front needs a GridPathProblem, got {type(problem).__name__}")
     if problem.n_obj > 3:
         raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
     moves = problem.representation.moves

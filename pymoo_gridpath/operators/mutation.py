@@ -34,7 +34,9 @@ class DiscretePolynomialMutation(Mutation):
     """
 
     def __init__(self, eta: float = 20.0, prob_var: float | None = None, prob: float = 1.0, **kwargs):
-        super().__init__(prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1), **kwargs)
+        super().__init__(
+            prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1, optional=True), **kwargs
+        )
         in_range("eta", eta, 0, 1000)
         self.eta = Real(eta, bounds=(3.0, 30.0), strict=(0.0, 1000.0))
 
@@ -96,7 +98,9 @@ class BitwiseMutation(Mutation):
     """
 
     def __init__(self, prob_var: float | None = None, final: float = 0.2, prob: float = 1.0, **kwargs):
-        super().__init__(prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1), **kwargs)
+        super().__init__(
+            prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1, optional=True), **kwargs
+        )
         self.final = in_range("final", final, 0, 1)
 
     def _do(self, problem, X, *args, random_state=None, algorithm=None, **kwargs):
@@ -132,7 +136,9 @@ class MixedMutation(Mutation):
     """
 
     def __init__(self, eta: float = 20.0, prob_var: float | None = None, final: float = 0.2, prob: float = 1.0, **kwargs):
-        super().__init__(prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1), **kwargs)
+        super().__init__(
+            prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1, optional=True), **kwargs
+        )
         self.bits = BitwiseMutation(final=final)
         self.integers = DiscretePolynomialMutation(eta)
 

@@ -15,17 +15,36 @@ def number(parameter: Any) -> float:
     return float(value)
 
 
-def in_range(name: str, value: Any, low: float, high: float) -> Any:
-    """Return a parameter whose number lies from ``low`` to ``high``; None, for a default, passes.
+def in_range(name: str, value: Any, low: float, high: float, optional: bool = False) -> Any:
+    """Return a parameter whose number lies from ``low`` to ``high``; None passes if it is optional.
 
     Raises
     ------
     GridPathError
         If it does not.
     """
-    if value is not None and not low <= number(value) <= high:
-        raise GridPathError(f"{name} is {number(value):g}, expected a number from {low:g} to {high:g}")
+    if value is None and optional:
+        return None
+    try:
+        found = number(value)
+    except (TypeError, ValueError):
+        raise GridPathError(f"{name} is {value!r}, expected a number from {low:g} to {high:g}") from None
+    if not low <= found <= high:
+        raise GridPathError(f"{name} is {found:g}, expected a number from {low:g} to {high:g}")
     return value
+
+
+def whole(name: str, value: Any, low: int, high: int) -> int:
+    """Return a parameter that is a whole number from ``low`` to ``high``.
+
+    Raises
+    ------
+    GridPathError
+        If it is not.
+    """
+    if in_range(name, value, low, high) != int(value):
+        raise GridPathError(f"{name} is {value:g}, expected a whole number")
+    return int(value)
 
 
 def one_or_two(n_offsprings: int) -> int:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from pymoo.core.mutation import Mutation
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.operators.parameters import in_range
+from pymoo_gridpath.operators.parameters import in_range, whole
 from pymoo_gridpath.operators.path_sampling import noise_of, random_stretches
 from pymoo_gridpath.operators.terrain import max_cells, paths_of, random_weights, terrain_of
 from pymoo_gridpath.search.terrain import FULL_WEIGHT
@@ -45,6 +47,8 @@ class PathMutation(Mutation):
 
     def __init__(self, ways=None, margin: int = 16, max_expansions: int = 5000, prob: float = 1.0, **kwargs):
         super().__init__(prob=in_range("prob", prob, 0, 1), **kwargs)
+        if not (ways is None or isinstance(ways, Mapping)):
+            raise GridPathError(f"ways is {ways!r}, expected a mapping from ways to shares, such as {{'random': 1}}")
         ways = dict(WAYS if ways is None else ways)
         unknown = set(ways) - set(WAYS)
         if unknown:
@@ -53,8 +57,8 @@ class PathMutation(Mutation):
         if not np.isfinite(shares).all() or shares.sum() <= 0:
             raise GridPathError(f"ways is {ways}, expected shares of which one or more are positive")
         self.shares = shares / shares.sum()
-        self.margin = int(in_range("margin", margin, 0, 10**6))
-        self.max_expansions = int(in_range("max_expansions", max_expansions, 1, 10**9))
+        self.margin = whole("margin", margin, 0, 10**6)
+        self.max_expansions = whole("max_expansions", max_expansions, 1, 10**9)
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
         assert random_state is not None

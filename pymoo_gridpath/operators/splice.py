@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pymoo.core.crossover import Crossover
 
-from pymoo_gridpath.operators.parameters import in_range, one_or_two
+from pymoo_gridpath.operators.parameters import in_range, one_or_two, whole
 from pymoo_gridpath.operators.terrain import max_cells, paths_of, random_weights, terrain_of
 from pymoo_gridpath.search.splice import splice
 
@@ -31,7 +31,7 @@ class SpliceCrossover(Crossover):
 
     def __init__(self, reach: int = 4, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
         super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
-        self.reach = int(in_range("reach", reach, 0, 64))
+        self.reach = whole("reach", reach, 0, 64)
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
         assert random_state is not None

@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import pytest
 from pymoo.optimize import minimize
+from pymoo.problems import get_problem
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import ExactFront
@@ -160,6 +161,13 @@ def test_cells_have_room_for_paths_that_turn_little(objectives):
     problem = GridPathProblem(OccupancyGrid(occupied), (0, 0), (width - 1, 0), "cells", objectives)
     front = problem.pareto_front()
     assert front[:, objectives.index("turn")].min() == 180.0
+
+
+def test_what_is_no_path_problem_or_no_budget_is_refused():
+    with pytest.raises(GridPathError, match="an exact front needs a GridPathProblem, got ZDT1"):
+        minimize(get_problem("zdt1"), ExactFront())
+    with pytest.raises(GridPathError, match="watch is 3, expected a function"):
+        ExactFront(watch=3)
 
 
 def test_a_front_that_took_too_long_is_looked_for_again():
