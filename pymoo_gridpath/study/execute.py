@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 import os
@@ -42,7 +41,8 @@ def execute(task: Task) -> bytes:
     started, begin = _now(), time.perf_counter()
     try:
         return to_bytes(_run(task, started))
-    except (Exception, SystemExit):
+    except (Exception, SystemExit) as error:
+        _let_ctrl_c_through(error)
         return failed_run(task, traceback.format_exc(), started, time.perf_counter() - begin)
 
 
@@ -122,8 +122,19 @@ def _warm_up(task: Task, problem) -> None:
         spec = {**spec, "max_labels": 100}
     else:
         termination = build_termination({"generations": 2})
-    with contextlib.suppress(Exception):  # the run itself will say so
+    try:
         _search(problem, build_algorithm(spec, problem), task.seed, termination, Recorder(problem.objective_names))
+    except Exception as error:  # the run itself will say so
+        _let_ctrl_c_through(error)
+
+
+def _let_ctrl_c_through(error: BaseException) -> None:
+    """Raise KeyboardInterrupt if that is what is behind an error: compiled code makes a SystemError of it."""
+    cause = error.__cause__
+    while cause is not None:
+        if isinstance(cause, KeyboardInterrupt):
+            raise cause
+        cause = cause.__cause__
 
 
 def _search(problem, algorithm, seed: int, termination, recorder: Recorder):

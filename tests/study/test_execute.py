@@ -151,6 +151,20 @@ def test_a_run_that_raises_is_recorded_with_its_traceback(plan):
     assert (record.key, record.problem) == (task.key, task.problem)
 
 
+@pytest.mark.parametrize("at", ["_search", "build_termination"])
+def test_ctrl_c_in_compiled_code_is_no_failure_of_the_run(plan, monkeypatch, at):
+    """A signal there comes as a SystemError, "returned a result with an exception set", caused by KeyboardInterrupt."""
+
+    def interrupted(*args):
+        raise SystemError("a kernel returned a result with an exception set") from KeyboardInterrupt()
+
+    monkeypatch.setattr("pymoo_gridpath.study.execute._warm", set())
+    monkeypatch.setattr(f"pymoo_gridpath.study.execute.{at}", interrupted)
+    task = next(task for task in map(plan.task, plan.runs) if task.budget is not None)
+    with pytest.raises(KeyboardInterrupt):
+        execute(task)
+
+
 def test_a_run_that_finds_nothing_legal_is_finished():
     task = one_task(
         dense(random={"size": 40, "p0": 0.6, "seeds": 1}), {"algorithm": "NSGA2", "pop_size": 4}, {"generations": 1}
