@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath.argument_types import folder, positive
 from pymoo_gridpath.compiled import COMPILED, on_compiling
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
@@ -120,15 +121,20 @@ def _parser() -> argparse.ArgumentParser:
         default="auto",
         help="axis along which paths advance that never turn back (default: auto)",
     )
-    search.add_argument("--pop-size", type=_positive, metavar="N", help="population size (default: 200)")
-    search.add_argument("--generations", type=_positive, metavar="N", help="generations of a run (default: 200)")
-    search.add_argument("--runs", type=_positive, metavar="N", help="runs that are merged into one front (default: 1)")
+    search.add_argument("--pop-size", type=positive, metavar="N", help="population size (default: 200)")
+    search.add_argument("--generations", type=positive, metavar="N", help="generations of a run (default: 200)")
+    search.add_argument("--runs", type=positive, metavar="N", help="runs that are merged into one front (default: 1)")
     search.add_argument(
         "--max-seconds", type=float, metavar="S", help="time for --algorithm exact; what it has found by then is kept"
     )
     search.add_argument("--seed", type=_natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
     plan.add_argument(
-        "-o", "--output", type=Path, default=Path("gridpath-out"), metavar="DIR", help="where files go (default: gridpath-out)"
+        "-o",
+        "--output",
+        type=folder,
+        default=Path("gridpath-out"),
+        metavar="DIR",
+        help="where files go (default: gridpath-out)",
     )
     plan.add_argument("--units", choices=("cells", "m"), default="cells", help="axes of the map figure (default: cells)")
 
@@ -171,13 +177,6 @@ def _cell(text: str) -> tuple[int, int]:
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a cell, expected X,Y such as 12,40") from None
     return x, y
-
-
-def _positive(text: str) -> int:
-    number = _natural(text)
-    if number == 0:
-        raise argparse.ArgumentTypeError("0 is not a positive whole number")
-    return number
 
 
 def _natural(text: str) -> int:
@@ -425,7 +424,7 @@ class _StopOnCtrlC:
         if self.requested and self.searching:
             raise KeyboardInterrupt
         if not self.requested:
-            print("\nstopping after this generation; Ctrl-C again ends at once and loses it", file=sys.stderr)
+            print("\nstopping, and keeping what was found; Ctrl-C again ends at once and loses it", file=sys.stderr)
         self.requested = True
 
 

@@ -85,3 +85,8 @@ def nearest(name: object, known: Iterable[str], otherwise: str = "expected one o
     known = list(known)
     near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
     return f"did you mean {near[0]!r}?" if near else f"{otherwise} {', '.join(known)}"
+
+
+def counted(number: int, noun: str) -> str:
+    """Return the part of a message that says how many there are of something: "1 path", "2,000 paths"."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"

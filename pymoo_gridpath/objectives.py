@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -139,6 +139,14 @@ OBJECTIVES: dict[str, type[Objective]] = {cls.name: cls for cls in (Length, Vuln
 def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> tuple[Objective, ...]:
     """Return objectives given by name or as objects.
 
+    Parameters
+    ----------
+    objectives : str, Objective, or sequence of these
+
+    Returns
+    -------
+    tuple of Objective
+
     Raises
     ------
     GridPathError
@@ -151,6 +159,8 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
     """
     if isinstance(objectives, str | Objective):
         objectives = [objectives]
+    elif not isinstance(objectives, Iterable):
+        raise GridPathError(f"objectives are {objectives!r}, expected names such as 'length', or Objective objects")
     made = []
     for item in objectives:
         if isinstance(item, str):

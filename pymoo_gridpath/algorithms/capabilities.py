@@ -213,6 +213,10 @@ _HEAD = (
 def capability_table() -> str:
     """Return the capability table as Markdown, one row an algorithm.
 
+    Returns
+    -------
+    str
+
     Examples
     --------
     >>> print(capability_table().splitlines()[0][:40])

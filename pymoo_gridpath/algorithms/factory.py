@@ -14,6 +14,7 @@ import numpy as np
 from pymoo.algorithms.moo.nsde import VariantDE
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.duplicate import NoDuplicateElimination
+from pymoo.core.problem import Problem
 from pymoo.util.reference_direction import (
     UniformReferenceDirectionFactory,
     get_number_of_uniform_points,
@@ -118,12 +119,14 @@ def find_capability(name: str) -> Capability:
 
 
 def _key(name: str) -> str:
-    key = re.sub(r"[^a-z0-9]", "", name.lower())
+    key = re.sub(r"[^a-z0-9]", "", str(name).lower())
     return re.sub(r"ii$", "2", re.sub(r"iii$", "3", key))
 
 
 def refuse_problem(row: Capability, problem) -> None:
     """Raise a CapabilityError that says what an algorithm cannot do for a problem, if anything."""
+    if not isinstance(problem, Problem):
+        raise CapabilityError(f"the problem is of the class {type(problem).__name__}, expected one of pymoo: a Problem")
     if row.unfit:
         raise CapabilityError(f"{row.name} {row.unfit}")
     if problem.n_obj < row.min_objectives:
@@ -274,6 +277,8 @@ def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, 
 
 
 def _smoothness(row: Capability, problem, smoothness: bool | None, given: Mapping[str, Any]) -> dict[str, Any]:
+    if smoothness is not None and not isinstance(smoothness, bool | np.bool_):
+        raise CapabilityError(f"smoothness is {smoothness!r}, expected True, False or None")
     own = [key for key in ("selection", "survival") if key in given]
     if smoothness and not row.smoothness:
         able = ", ".join(other.name for other in CAPABILITIES.values() if other.smoothness)

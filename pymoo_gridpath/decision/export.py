@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from pymoo_gridpath.decision.provenance import plain
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, counted
 
 FORMAT = "pymoo_gridpath trade-off set"
 FORMAT_VERSION = 1
@@ -112,8 +112,7 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
 
 def _heading(trade_off) -> str:
     problem = trade_off.problem
-    count = f"{len(trade_off)} trade-off path{'' if len(trade_off) == 1 else 's'}"
-    heading = f"{count} from {problem.start} to {problem.goal} on {problem.grid.name!r}"
+    heading = f"{counted(len(trade_off), 'trade-off path')} from {problem.start} to {problem.goal} on {problem.grid.name!r}"
     return heading if trade_off.feasible else f"{heading}\nNOT FEASIBLE: {trade_off.infeasibility}"
 
 

@@ -4,14 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Vulnerability
-
-
-def require_path_problem(problem) -> None:
-    """Raise GridPathError if a problem does not decode paths on a grid."""
-    if not all(hasattr(problem, name) for name in ("decode", "score", "grid", "representation", "objectives")):
-        raise GridPathError(f"the problem is {problem!r}, expected a path problem such as GridPathProblem")
+from pymoo_gridpath.representations.base import representation_of
 
 
 class PathMeasures:
@@ -34,7 +28,7 @@ class PathMeasures:
     """
 
     def __init__(self, problem):
-        require_path_problem(problem)
+        representation_of(problem)
         given = [objective for objective in problem.objectives if isinstance(objective, Vulnerability)]
         self.problem = problem
         self._objective = given[0] if given else Vulnerability()

@@ -14,10 +14,11 @@ import numpy as np
 
 from pymoo_gridpath.decision import export, provenance
 from pymoo_gridpath.decision.knee import knee_point
-from pymoo_gridpath.decision.measures import PathMeasures, require_path_problem
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import clearance
 from pymoo_gridpath.files import write_whole
+from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.versions import versions
 
 #: What members of a trade-off set go by, in the order in which tables and figures show them.
@@ -179,7 +180,7 @@ class TradeOffSet:
         GridPathError
             If there are no rows, or they do not fit the problem.
         """
-        require_path_problem(problem)
+        representation_of(problem)
         return cls(problem, X, _meta(problem, settings, []))
 
     def _measure(self, measures: PathMeasures) -> dict[str, np.ndarray]:
@@ -283,7 +284,7 @@ class TradeOffSet:
         crossed = self.measures["interfering_cells"].min()
         if crossed == 0:
             return f"no path keeps the potential limit of {self.problem.potential_limit:g}"
-        return f"no path is legal; these cross {crossed} occupied cell{'' if crossed == 1 else 's'}, the fewest found"
+        return f"no path is legal; these cross {counted(crossed, 'occupied cell')}, the fewest found"
 
     def table(self, max_rows: int | None = None) -> str:
         """Return a plain text table, one line a path, with the names of those that have one.
@@ -348,7 +349,7 @@ def _common_problem(runs: Sequence) -> Any:
     """Return the problem that all runs solved."""
     problems: list[Any] = [getattr(run, "problem", None) for run in runs]
     for problem in problems:
-        require_path_problem(problem)
+        representation_of(problem)
     first = problems[0]
     for k, problem in enumerate(problems):
         if problem is first:

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import moocore
 import numpy as np
 
-from pymoo_gridpath.errors import CapabilityError, GridPathError
+from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import integer_costs
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import front_of_two
 from pymoo_gridpath.objectives import Length, Turn
+from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search import Moves
 from pymoo_gridpath.search.sequences import Sequences, cut_loops
 
@@ -78,6 +79,10 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     budget : Budget, optional
         What the search may use; by default 70 % of the free memory, and as long as it takes.
 
+    Returns
+    -------
+    ExactResult
+
     Raises
     ------
     CapabilityError
@@ -93,11 +98,9 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     >>> found.complete, found.F.round(2).tolist()
     (True, [[5.41, 0.66]])
     """
-    if not hasattr(problem, "representation"):
-        raise GridPathError(f"an exact front needs a GridPathProblem, got {type(problem).__name__}")
+    moves = representation_of(problem).moves
     if problem.n_obj > 3:
         raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
-    moves = problem.representation.moves
     if moves.n_cells >= _MOST_CELLS:
         raise CapabilityError(f"the grid has {moves.n_cells:,} cells, expected fewer than {_MOST_CELLS:,} for an exact front")
     meter = Meter(budget or Budget())
@@ -105,15 +108,15 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     seconds = meter.elapsed
     X, F, too_long = _scored(problem, parts)
     if meter.message:
-        message = f"ended early, {meter.message}; {len(F)} paths found"
+        message = f"ended early, {meter.message}; {counted(len(F), 'path')} found"
     elif len(too_long):
         message = (
-            f"left out {len(too_long)} points, whose paths visit up to {too_long.max()} cells, expected at most "
+            f"left out {counted(len(too_long), 'point')}, whose paths visit up to {too_long.max()} cells, expected at most "
             f"{problem.representation.max_cells}, the max_cells of the representation; give CellSequence a larger one; "
-            f"{len(F)} points found"
+            f"{counted(len(F), 'point')} found"
         )
     elif len(F):
-        message = f"all {len(F)} points found"
+        message = f"all {counted(len(F), 'point')} found"
     else:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
     complete = not meter.message and len(too_long) == 0

@@ -113,6 +113,14 @@ def _is_bare(name: str) -> bool:
 def map_format(path: str | os.PathLike[str]) -> str:
     """Return the format of a map file in words, such as "a ROS map" or "a plain text map".
 
+    Parameters
+    ----------
+    path : str or path-like
+
+    Returns
+    -------
+    str
+
     Raises
     ------
     MapError

@@ -23,8 +23,8 @@ from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.operators.selection import SmoothnessTournament
 from pymoo_gridpath.operators.splice import SpliceCrossover
 from pymoo_gridpath.operators.survival import RankAndSmoothness
-from pymoo_gridpath.operators.terrain import representation_of, terrain_of
-from pymoo_gridpath.representations import MonotoneRepresentation
+from pymoo_gridpath.operators.terrain import terrain_of
+from pymoo_gridpath.representations.base import MonotoneRepresentation, representation_of
 
 __all__ = [
     "ArrayMating",
@@ -139,6 +139,15 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
 
 def default_operators(problem) -> dict:
     """Return `paper_operators` for the paper's representations, and `path_operators` for any other, such as "cells".
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+
+    Returns
+    -------
+    dict
+        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``.
 
     Raises
     ------

@@ -6,9 +6,8 @@ import weakref
 
 import numpy as np
 
-from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Length
-from pymoo_gridpath.representations import Representation
+from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search.sequences import Sequences, are_legal, mend
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
 
@@ -17,20 +16,6 @@ _TERRAINS: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
 
 # Weight of the length where it is no objective: of ways that cost the same, the shorter.
 LEAST_WEIGHT = FULL_WEIGHT // 64
-
-
-def representation_of(problem) -> Representation:
-    """Return the representation of a problem.
-
-    Raises
-    ------
-    GridPathError
-        If it has none.
-    """
-    representation = getattr(problem, "representation", None)
-    if representation is None:
-        raise GridPathError(f"the operators need a GridPathProblem, got {type(problem).__name__}")
-    return representation
 
 
 def terrain_of(problem) -> Terrain:

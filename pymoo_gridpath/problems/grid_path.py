@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from numbers import Real
 from typing import Literal
 
 import numpy as np
@@ -114,13 +115,18 @@ class GridPathProblem(Problem):
         potential_limit: float | None = None,
         axis: Axis = "auto",
     ):
+        if not isinstance(grid, OccupancyGrid):
+            raise GridPathError(f"grid is of the class {type(grid).__name__}, expected an OccupancyGrid; load_map reads one")
         self.grid = grid
         self.start, self.goal = grid.check_query(start, goal)
         self.objectives = make_objectives(objectives)
         if obstacles == "constraint" and penalty is not None:
             raise GridPathError("penalty is for obstacles='penalty' and 'limit', not for obstacles='constraint'")
         self.obstacles = obstacles
-        self.penalty = float(self._default_penalty() if penalty is None else penalty)
+        given = self._default_penalty() if penalty is None else penalty
+        if not (isinstance(given, Real) and 0 < given < np.inf):
+            raise GridPathError(f"penalty is {given!r}, expected a positive number")
+        self.penalty = float(given)
         self.potential_limit = potential_limit
         self._check_obstacles()
         fields = [_checked(objective, grid) for objective in self.objectives]
@@ -148,8 +154,6 @@ class GridPathProblem(Problem):
     def _check_obstacles(self) -> None:
         if self.obstacles not in OBSTACLES:
             raise GridPathError(f"obstacles is {self.obstacles!r}, expected one of {', '.join(OBSTACLES)}")
-        if not (np.isfinite(self.penalty) and self.penalty > 0):
-            raise GridPathError(f"penalty is {self.penalty:g}, expected a positive number")
         if self.obstacles != "limit":
             if self.potential_limit is not None:
                 raise GridPathError(f"potential_limit is for obstacles='limit', not for obstacles={self.obstacles!r}")
@@ -157,10 +161,14 @@ class GridPathProblem(Problem):
             raise GridPathError(
                 f"obstacles='limit' limits the vulnerability, which is not among the objectives {self.objective_names}"
             )
-        elif self.potential_limit is None or not self.potential_limit > 0:
-            raise GridPathError(f"potential_limit is {self.potential_limit}, expected a positive number with obstacles='limit'")
+        elif not (isinstance(self.potential_limit, Real) and self.potential_limit > 0):
+            raise GridPathError(
+                f"potential_limit is {self.potential_limit!r}, expected a positive number with obstacles='limit'"
+            )
 
     def _check_representation(self, representation: Representation, axis: Axis) -> None:
+        if not isinstance(representation, Representation):
+            raise GridPathError(f"representation is {representation!r}, expected a name such as 'integer', or a Representation")
         if (representation.grid, representation.start, representation.goal) != (self.grid, self.start, self.goal):
             raise GridPathError(
                 f"the {representation.name} representation was made for another grid, start or goal than the problem has"

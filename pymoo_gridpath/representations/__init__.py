@@ -36,6 +36,10 @@ def make_representation(
     axis : {"auto", "x", "y"}, default "auto"
         See `MonotoneFrame`; "cells" has no axis and takes "auto" only.
 
+    Returns
+    -------
+    Representation
+
     Raises
     ------
     GridPathError

@@ -154,6 +154,14 @@ class Representation(ABC):
         return np.clip(X, self.xl, self.xu).astype(np.int64, copy=False)
 
 
+def representation_of(problem) -> Representation:
+    """Return the representation of a path problem, or raise a GridPathError if it is none."""
+    representation = getattr(problem, "representation", None)
+    if not isinstance(representation, Representation):
+        raise GridPathError(f"the problem is of the class {type(problem).__name__}, expected a path problem: GridPathProblem")
+    return representation
+
+
 class MonotoneRepresentation(Representation):
     """Base of the codings of Ahmed and Deb (2013, section 2): one step to the next column a gene.
 

@@ -8,7 +8,9 @@ import math
 import sys
 from pathlib import Path
 
+from pymoo_gridpath.argument_types import folder, positive
 from pymoo_gridpath.compiled import on_compiling
+from pymoo_gridpath.errors import counted
 from pymoo_gridpath.progress import say_that_it_compiles
 from pymoo_gridpath.study.progress import duration
 
@@ -33,13 +35,13 @@ def add_study_commands(commands) -> None:
     check = steps.add_parser("check", help="say what is wrong, or how many runs and how long", description=_check.__doc__)
     check.set_defaults(run=_check)
     _add_file(check)
-    check.add_argument("--jobs", type=_positive, default=1, metavar="N", help="processes that the time is estimated for")
+    check.add_argument("--jobs", type=positive, default=1, metavar="N", help="processes that the time is estimated for")
 
     run = steps.add_parser("run", help="run it, or go on where it was stopped", description=_run.__doc__)
     run.set_defaults(run=_run)
     _add_file(run)
     where = run.add_mutually_exclusive_group()
-    where.add_argument("--jobs", type=_positive, default=1, metavar="N", help="processes on this computer (default: 1)")
+    where.add_argument("--jobs", type=positive, default=1, metavar="N", help="processes on this computer (default: 1)")
     where.add_argument("--dask", metavar="tcp://HOST:PORT", help="scheduler of a Dask cluster that runs already")
     run.add_argument("--retry-failed", action="store_true", help="run again what ended with an error or was cut short")
 
@@ -49,20 +51,14 @@ def add_study_commands(commands) -> None:
     report.add_argument(
         "--target", type=_share, metavar="R", help="share of the best hypervolume to be reached, above 0, at most 1"
     )
-    report.add_argument("-o", "--output", type=Path, metavar="DIR2", help="where the report goes (default: DIR/report)")
+    report.add_argument("-o", "--output", type=folder, metavar="DIR2", help="where the report goes (default: DIR/report)")
 
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="study file, such as `study init` writes")
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help="where results are kept (default: the file's name with -results)"
+        "-o", "--output", type=folder, metavar="DIR", help="where results are kept (default: the file's name with -results)"
     )
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) == 0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, one or more")
-    return int(text)
 
 
 def _share(text: str) -> float:
@@ -164,12 +160,8 @@ def _results(arguments) -> Path:
 
 def _counts(study, plan) -> str:
     return ", ".join(
-        (_number(len(plan.problems), "problem"), _number(len(plan.algorithms), "algorithm"), _number(len(study.seeds), "seed"))
+        (counted(len(plan.problems), "problem"), counted(len(plan.algorithms), "algorithm"), counted(len(study.seeds), "seed"))
     )
-
-
-def _number(n: int, noun: str) -> str:
-    return f"{n:,} {noun}{'' if n == 1 else 's'}"
 
 
 def _time(found, n_runs: int, jobs: int) -> str:

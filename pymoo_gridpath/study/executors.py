@@ -209,6 +209,11 @@ def dask_executor(address: str, timeout: float = 30.0) -> StudyExecutor:
         Seconds to wait for the scheduler, for a first worker, and for the answers of the workers. A study that has no
         worker for so long is given up.
 
+    Returns
+    -------
+    StudyExecutor
+        For the ``executor`` of `run_study`.
+
     Raises
     ------
     GridPathError

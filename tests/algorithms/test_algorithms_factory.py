@@ -69,12 +69,19 @@ def test_unknown_name(name, near, make_problem):
         ("NSGA3", {"ref_dirs": np.eye(2), "pop_size": 1}, "ref_dirs has 2 rows, expected 2 to pop_size = 1"),
         ("CTAEA", {"crossover": DiscreteSBX()}, "CTAEA needs a crossover that gives one child"),
         ("GA", {}, "GA takes one objective, the problem has 2"),
+        ("NSGA2", {"smoothness": "yes"}, "smoothness is 'yes', expected True, False or None"),
+        (None, {}, "there is no algorithm None; expected one of"),
         ("CMOPSO", {}, "CMOPSO moves particles in a continuous space, and grid codings are discrete"),
     ],
 )
 def test_refusals(name, kwargs, message, make_problem):
     with pytest.raises(CapabilityError, match=message):
         make_algorithm(name, make_problem(), **kwargs)
+
+
+def test_what_is_no_problem_is_refused():
+    with pytest.raises(CapabilityError, match="the problem is of the class str, expected one of pymoo"):
+        make_algorithm("NSGA2", "office")
 
 
 def test_three_objectives_need_room_for_three_directions(make_problem):

@@ -10,6 +10,7 @@ import sys
 
 import numpy as np
 import pytest
+from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 from pymoo.problems import get_problem
 
@@ -21,6 +22,7 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.exact import Budget, exact_front
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.objectives import Objective
+from pymoo_gridpath.operators import default_operators
 from pymoo_gridpath.problems import random_dense_grid
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.search import DIAGONAL, UNREACHABLE, Moves, backward_costs
@@ -164,8 +166,15 @@ def test_cells_have_room_for_paths_that_turn_little(objectives):
 
 
 def test_what_is_no_path_problem_or_no_budget_is_refused():
-    with pytest.raises(GridPathError, match="an exact front needs a GridPathProblem, got ZDT1"):
-        minimize(get_problem("zdt1"), ExactFront())
+    other = get_problem("zdt1")
+    run = minimize(other, NSGA2(pop_size=4), ("n_gen", 1))
+    for use in (
+        lambda: minimize(other, ExactFront()),
+        lambda: default_operators(other),
+        lambda: TradeOffSet.from_results(run),
+    ):
+        with pytest.raises(GridPathError, match="the problem is of the class ZDT1, expected a path problem"):
+            use()
     with pytest.raises(GridPathError, match="watch is 3, expected a function"):
         ExactFront(watch=3)
 
@@ -191,6 +200,10 @@ def test_files_say_whether_a_front_is_complete():
     three = GridPathProblem(problem.grid, (0, 0), (19, 19), "cells", ("length", "vulnerability", "turn"))
     with pytest.raises(GridPathError, match="Result 0 holds no paths: ended early, the budget of 10 labels is used up"):
         TradeOffSet.from_results(minimize(three, ExactFront(max_labels=10)))
+
+
+def test_a_front_of_one_point_is_told_in_the_singular():
+    assert exact_front(GridPathProblem(OccupancyGrid(np.zeros((4, 4))), (0, 0), (3, 3))).message == "all 1 point found"
 
 
 def test_as_an_algorithm():

@@ -271,9 +271,9 @@ def test_arguments_out_of_range_are_refused():
         (lambda: PathMutation(ways={"shift": "a"}), "shift is 'a', expected a number"),
         (lambda: ScalarizedSampling(noise=-1), "noise is -1"),
         (lambda: path_operators(problem, "best"), "sampling is 'best', expected 'scalarized' or 'random'"),
-        (lambda: path_operators(Problem(n_var=2)), "need a GridPathProblem, got Problem"),
-        (lambda: paper_operators(Problem(n_var=2)), "need a GridPathProblem, got Problem"),
-        (lambda: default_operators(Problem(n_var=2)), "need a GridPathProblem, got Problem"),
+        (lambda: path_operators(Problem(n_var=2)), "of the class Problem, expected a path problem"),
+        (lambda: paper_operators(Problem(n_var=2)), "of the class Problem, expected a path problem"),
+        (lambda: default_operators(Problem(n_var=2)), "of the class Problem, expected a path problem"),
     ]:
         with pytest.raises(GridPathError, match=message):
             make()
