@@ -59,11 +59,13 @@ class MixedRepresentation(MonotoneRepresentation):
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the genes of paths, int, shape (N, n_var).
 
-        The inverse of `decode` but for the redundancy of the coding: the bit of a horizontal step is 1, and 0 for the
-        last step. Paths that have no code of their own are treated as in `IntegerRepresentation.encode`.
+        The inverse of `decode` but for the redundancy of the coding: the bit of a horizontal step is 1, and that of a
+        horizontal last step 0. A last step away from the goal's row becomes a horizontal one; other paths that have no code of
+        their own are treated as in `IntegerRepresentation.encode`.
         """
         moves = np.diff(paths.leave[:, :-1], axis=1, prepend=self.frame.start_row)
-        last = paths.enter[:, -1:] != paths.leave[:, -2:-1]
+        ahead = np.sign(self.frame.goal_row - paths.leave[:, -2:-1])
+        last = (ahead != 0) & (paths.enter[:, -1:] == paths.leave[:, -2:-1] + ahead)
         integers = np.concatenate([moves[:, :1], np.abs(moves[:, 1:])], axis=1)
         return np.concatenate([moves[:, 1:] >= 0, last, integers], axis=1).astype(np.int64)
 
