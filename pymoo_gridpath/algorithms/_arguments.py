@@ -67,7 +67,7 @@ def check(name: str, given, accepted) -> None:
     """
     for key in given:
         if key not in accepted:
-            raise CapabilityError(f"{name} takes no argument {key!r}; {nearest(key, sorted(accepted), 'it takes')}")
+            raise CapabilityError(f"{name} takes no argument {key!r}; {nearest(key, sorted(set(accepted)), 'it takes')}")
 
 
 def fresh_defaults(accepted: dict[str, Any]) -> dict[str, Any]:

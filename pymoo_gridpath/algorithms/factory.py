@@ -158,6 +158,8 @@ def build(
     accepted.pop("smoothness", None)
     given = dict(kwargs)
     if operators is not None:
+        if not isinstance(operators, Mapping):
+            raise CapabilityError(f"operators is {operators!r}, expected a mapping such as path_operators returns")
         _arguments.check("operators", operators, dict.fromkeys(_OPERATORS))
         given.update(_fitted(row, operators, accepted))
     _arguments.check(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
@@ -256,6 +258,12 @@ def _class_of(row: Capability) -> type:
 def _fitted(row: Capability, operators: Mapping[str, Any], accepted) -> dict[str, Any]:
     """Return operators without those that an algorithm does not take, and with one child a mating if it needs that."""
     fitted = {key: value for key, value in operators.items() if key in accepted or key in ("sampling", "crossover", "mutation")}
+    own = [key for key in ("crossover", "mutation") if key in fitted and not row.operators]
+    if own:
+        raise CapabilityError(
+            f"{row.name} takes no argument {own[0]!r}, since it makes children in a way of its own; give operators without "
+            f"crossover and mutation"
+        )
     if row.one_child and knows_arrays(fitted.get("crossover")):
         crossover: Any = copy.copy(fitted["crossover"])
         crossover.n_offsprings = 1

@@ -103,10 +103,10 @@ class SmoothMOEAD(MOEAD):
         ref_dirs = np.asarray(ref_dirs, dtype=float)
         if ref_dirs.ndim != 2 or len(ref_dirs) < 2:
             raise CapabilityError(f"MOEA/D needs two or more reference directions as rows, got shape {ref_dirs.shape}")
-        if n_replace < 1:
-            raise CapabilityError(f"n_replace is {n_replace}, expected a positive number of neighbours")
-        if batch_size is not None and batch_size < 1:
-            raise CapabilityError(f"batch_size is {batch_size}, expected a positive number of children")
+        given = {"n_replace": n_replace, "batch_size": batch_size, "n_neighbors": kwargs.get("n_neighbors")}
+        for name, value in given.items():
+            if value is not None and (isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1):
+                raise CapabilityError(f"{name} is {value!r}, expected a whole number of at least 1")
         super().__init__(ref_dirs=ref_dirs, **kwargs)
         self.smoothness = smoothness
         self.normalize = normalize

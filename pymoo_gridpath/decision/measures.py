@@ -42,5 +42,6 @@ class PathMeasures:
     def legal(self, paths) -> np.ndarray:
         """Return which of N paths cross no occupied cell and keep the potential limit if the problem has one, shape (N,)."""
         legal = np.asarray(paths.interfering_cells) == 0
-        limit = getattr(self.problem, "potential_limit", None)
-        return legal if limit is None else legal & (self.vulnerability(paths) <= limit)
+        if self.problem.potential_limit is None:
+            return legal
+        return legal & (self.problem.over_limit(self.vulnerability(paths)) <= 0)

@@ -17,6 +17,9 @@ from pymoo_gridpath.errors import GridPathError
 # Share of the free memory that a search may take by default; the rest is for its end, and for others.
 _SHARE = 0.7
 
+# No machine has more bytes.
+_MOST_MEMORY = 2**62
+
 # Labels are numbered in 32 bits.
 _MOST_LABELS = 2**31 - 2**20
 
@@ -67,7 +70,7 @@ class Budget:
     def __post_init__(self):
         for name in ("max_seconds", "max_labels", "max_memory"):
             value = getattr(self, name)
-            if value is not None and not (isinstance(value, int | float | np.number) and value >= 0):
+            if value is not None and not (isinstance(value, int | float | np.integer | np.floating) and value >= 0):
                 raise GridPathError(f"{name} is {value!r}, expected a number, zero or more")
         if not (self.watch is None or callable(self.watch)):
             raise GridPathError(f"watch is {self.watch!r}, expected a function of one argument, the Meter")
@@ -94,7 +97,7 @@ class Meter:
         self.begin = time.perf_counter()
         self.seconds = math.inf if budget.max_seconds is None else budget.max_seconds
         self.labels = _MOST_LABELS if budget.max_labels is None else min(budget.max_labels, _MOST_LABELS)
-        self.memory = _SHARE * free_memory() if budget.max_memory is None else budget.max_memory
+        self.memory = _SHARE * free_memory() if budget.max_memory is None else min(budget.max_memory, _MOST_MEMORY)
         self.watch = budget.watch
         self.message = ""
         self.n_fixed = self.n_labels = self.n_bytes = 0

@@ -19,6 +19,9 @@ LENGTH_UNIT = 2**36
 # No sum along a path may come near 2**61.
 _LARGEST_SUM = 2.0**58
 
+# Parts of 1 in which decimal costs are counted at most.
+_FINEST_DECIMAL = 10**9
+
 # Bits, from the first of the largest cost, that costs may have to be taken as they are; potentials of the package have 33.
 _BITS = 44
 
@@ -52,6 +55,14 @@ class Costs(NamedTuple):
         return Costs(
             self.step[order].copy(), self.field[order].copy(), self.with_heading, self.unit[order], self.rounded[order]
         )
+
+    def values(self, points: np.ndarray) -> np.ndarray:
+        """Return points, shape (N, k), in the units of the objectives: the same for equal sums in whatever unit."""
+        # The nearest number to a product with 0.1 is not always the nearest to a tenth; with a power of two it is.
+        with np.errstate(over="ignore"):
+            per_one = np.rint(1 / self.unit)
+        decimal = (per_one > 1) & (per_one <= _FINEST_DECIMAL)
+        return np.where(decimal, points / np.where(decimal, per_one, 1.0), points * self.unit)
 
 
 def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = None) -> Costs:

@@ -9,9 +9,9 @@ import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
-from pymoo_gridpath.exact.costs import integer_costs
+from pymoo_gridpath.exact.costs import Costs, integer_costs
 from pymoo_gridpath.exact.three import front_of_three
-from pymoo_gridpath.exact.two import front_of_two
+from pymoo_gridpath.exact.two import Front, front_of_two, merged
 from pymoo_gridpath.objectives import Length, Turn
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search import Moves
@@ -47,8 +47,8 @@ class ExactResult:
         unless the time was too short even for these, and the best paths between them that were found, which may lie off the
         front; of three a part of the front.
     complete : bool
-        Whether this is the whole front. If not, a budget was used up, or the representation cannot code some of its paths
-        (`CellSequence` with too small ``max_cells``).
+        Whether this is the whole front. If not, a budget was used up, or, of three objectives, the representation cannot code
+        some of its paths (`CellSequence` with too small ``max_cells``).
     message : str
         How the search ended.
     n_labels, n_bytes : int
@@ -70,7 +70,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     """Return the Pareto front of the legal paths of a problem.
 
     Legal paths cross no occupied cell and, with ``obstacles="limit"``, keep the potential limit. Those of a monotone
-    representation never turn back along its axis.
+    representation never turn back along its axis. Those of `CellSequence` visit no more than its ``max_cells`` cells; of one
+    and two objectives the front is that of these paths; of three it lacks points whose paths are longer, and is incomplete.
 
     Parameters
     ----------
@@ -99,6 +100,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     (True, [[5.41, 0.66]])
     """
     moves = representation_of(problem).moves
+    if not (budget is None or isinstance(budget, Budget)):
+        raise GridPathError(f"budget is {budget!r}, expected a Budget")
     if problem.n_obj > 3:
         raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
     if moves.n_cells >= _MOST_CELLS:
@@ -106,21 +109,33 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     meter = Meter(budget or Budget())
     parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter, set())
     seconds = meter.elapsed
-    X, F, too_long = _scored(problem, parts)
+    X, F, too_long = _scored(problem, parts, early=bool(meter.message))
     if meter.message:
         message = f"ended early, {meter.message}; {counted(len(F), 'path')} found"
     elif len(too_long):
         message = (
             f"left out {counted(len(too_long), 'point')}, whose paths visit up to {too_long.max()} cells, expected at most "
-            f"{problem.representation.max_cells}, the max_cells of the representation; give CellSequence a larger one; "
+            f"{_most_cells(problem)}, the max_cells of the representation; give CellSequence a larger one; "
             f"{counted(len(F), 'point')} found"
         )
     elif len(F):
         message = f"all {counted(len(F), 'point')} found"
+        longest = max(part.longest for part in parts)
+        if longest > _most_cells(problem):
+            message += (
+                f" of paths that visit at most {_most_cells(problem)} cells, the max_cells of the representation; without that "
+                f"limit the front has paths of up to {longest}"
+            )
     else:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
     complete = not meter.message and len(too_long) == 0
     return ExactResult(X, F, complete, message, meter.n_labels, meter.n_bytes, seconds)
+
+
+def _most_cells(problem) -> int:
+    """Return how many cells a path can visit that the problem's representation codes."""
+    representation = problem.representation
+    return getattr(representation, "max_cells", representation.moves.n_cells)
 
 
 def _place(objective) -> int:
@@ -142,12 +157,15 @@ class _Part:
         By how much that may be off, where costs had to be rounded.
     rounded : numpy.ndarray of bool, shape (n_obj,)
         Whether they had to be.
+    longest : int
+        Cells of the longest path of the front; more than the representation can code if not all of its points are here.
     """
 
     paths: list[np.ndarray]
     F: np.ndarray
     off: np.ndarray
     rounded: np.ndarray
+    longest: int
 
 
 def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: set[bytes]) -> list[_Part]:
@@ -165,9 +183,15 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: s
     else:
         # A single objective is searched as two equal ones.
         front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
+    longest = max(map(len, front.paths), default=0)
+    if problem.n_obj < 3 and longest > _most_cells(problem) and not meter.message:
+        whole = front.points
+        front = _front_of_short_paths(front, moves, costs.take(order), start, goal, _most_cells(problem), meter)
+        if np.array_equal(front.points, whole):
+            longest = max(map(len, front.paths))
     points = front.points[:, np.argsort(order)] + costs.field[:, start]
     lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
-    parts = [_Part(front.paths, points * costs.unit, lengths * costs.unit * costs.rounded, costs.rounded)]
+    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.rounded, costs.rounded, longest)]
     finer = [_cells_of_cheap(points[:, k], costs.field[k], usable) for k in np.flatnonzero(costs.rounded)]
     del costs, front
     for within in finer:
@@ -175,6 +199,30 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: s
             searched.add(within.tobytes())
             parts += _search(problem, moves.within(within), within, meter, searched)
     return parts
+
+
+def _front_of_short_paths(
+    front: Front, moves: Moves, costs: Costs, start: int, goal: int, max_cells: int, meter: Meter
+) -> Front:
+    """Return the front of the paths that visit at most ``max_cells`` cells, for one or two objectives and that of all paths.
+
+    The number of steps is searched as one more objective.
+    """
+    k = len(costs.step) - 1
+    # Before the last one, which alone may depend on headings.
+    costs = costs._replace(
+        step=np.insert(costs.step, k, 1, axis=0),
+        field=np.insert(costs.field, k, 0, axis=0),
+        unit=np.insert(costs.unit, k, 1.0),
+        rounded=np.insert(costs.rounded, k, False),
+    )
+    found = (front_of_two if k == 0 else front_of_three)(moves, costs, start, goal, meter)
+    points = np.delete(found.points, k, axis=1)
+    both = [front, Front(found.paths, points[:, [0, -1]])]
+    short = [np.array([len(path) <= max_cells for path in one.paths], dtype=bool) for one in both]
+    return merged(
+        [Front([one.paths[i] for i in np.flatnonzero(few)], one.points[few]) for one, few in zip(both, short, strict=True)]
+    )
 
 
 def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) -> np.ndarray | None:
@@ -187,10 +235,11 @@ def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) ->
     return usable & (field <= dearest[cheap].max()) if cheap.any() else None
 
 
-def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _scored(problem, parts: list[_Part], early: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return genes and objectives of paths in ascending order, without those that exceed a potential limit.
 
-    Paths too long for the representation are left out; the numbers of their cells come third.
+    Paths too long for the representation are left out; the numbers of their cells come third. What was found ``early``, before
+    the search was over, may have detours, which a monotone representation codes as the better direct way.
     """
     paths = [path for part in parts for path in part.paths]
     offsets = np.cumsum([0, *(len(path) for path in paths)])
@@ -201,12 +250,16 @@ def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray, np.nda
     if not fits.all():
         fits |= problem.representation.fits(cut_loops(sequences, problem.representation.moves.n_cells))
         k = problem.objective_names.index("vulnerability") if problem.obstacles == "limit" else None
-        wanted = ~fits if k is None else ~fits & (expected[:, k] <= problem.potential_limit * (1 + _SAME))
+        wanted = ~fits if k is None else ~fits & (problem.over_limit(expected[:, k] - off[:, k]) <= 0)
         too_long, sequences = sequences.lengths[wanted], sequences.take(fits)
         expected, off = expected[fits], off[fits]
     X = problem.representation.from_sequences(sequences)
     F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
-    close = np.abs(F - expected) <= _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
+    rounding = _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
+    close = np.abs(F - expected) <= rounding
+    if early and not close.all():
+        better = (expected + rounding >= F).all(axis=1) & ~close.all(axis=1)
+        expected[better], close[better] = F[better], True
     if not close.all():
         wrong = problem.objective_names[np.flatnonzero(~close.all(axis=0))[0]]
         raise GridPathError(
@@ -215,14 +268,15 @@ def _scored(problem, parts: list[_Part]) -> tuple[np.ndarray, np.ndarray, np.nda
         )
     keep = np.lexsort(F.T[::-1])
     rounded = np.any([part.rounded for part in parts], axis=0)
-    if len(F) and rounded.any():
-        compared = F[keep]
+    if len(F) and (early or rounded.any()):
+        # Of what was found in several parts, or before the search was over. Scores may differ by the order of their sum.
+        compared = expected[keep]
         for k in np.flatnonzero(rounded):
-            compared[:, k] = _ranks(compared[:, k])
+            compared[:, k] = _ranks(F[keep, k])
         keep = keep[moocore.is_nondominated(compared)]
     if problem.obstacles == "limit":
         k = problem.objective_names.index("vulnerability")
-        keep = keep[F[keep, k] <= problem.potential_limit]
+        keep = keep[problem.over_limit(F[keep, k]) <= 0]
     return X[keep], F[keep], too_long
 
 

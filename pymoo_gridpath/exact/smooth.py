@@ -1,8 +1,10 @@
-"""Of all paths that have the costs of a point of the front, the one that turns least.
+"""Of all paths that have the costs of a point of the front, the one that visits the fewest cells, and of these turns least.
 
 A label search keeps one label for each state and costs, and one path to it. But whatever else leads there at the same costs
 comes from labels that it has kept, too: the beginning of a path to a point of the front is dominated by no other. So the labels
-hold all paths to the front, and the least turn among them follows from the start on.
+hold all paths to the front, and the fewest steps and the least turn among them follow from the start on.
+
+With the length among the objectives, all of them take the same number of steps.
 """
 
 from __future__ import annotations
@@ -19,34 +21,35 @@ from pymoo_gridpath.search import HEADINGS, Moves, turn_units
 # More than any path turns.
 _NEVER = np.iinfo(np.int32).max // 2
 
-# Bytes of a closed label while the labels are put in order, and of one that leads to the ends at hand, besides.
-_BYTES_OF_CLOSED, _BYTES_OF_LEADING = 8 + 16 + 4 + 4, 2 * 4 + 8 + 8 * (4 + 4 + 1)
+# Bytes of a closed label while the labels are put in order, besides 8 for each cost, and of one that leads to the ends at hand.
+_BYTES_OF_CLOSED, _BYTES_OF_LEADING = 8 + 4 + 4, 2 * 4 + 8 + 8 * (4 + 4 + 1)
+
+# The same for the search for the fewest steps.
+_BYTES_OF_STEPS = 8 * 4 + 8 + 8 + 4 + 4
 
 # Ends are taken together until this share of the labels, or this number, leads to them: they have beginnings in common.
 _SHARE_AT_A_TIME, _LEAST_AT_A_TIME = 1 / 16, 2**9
 
 
 def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.ndarray, meter: Meter) -> list[np.ndarray] | None:
-    """Return the cells of the path with the least turn to each of some labels.
-
-    None if there is too little memory for it, or if steps may cost nothing, so that paths could lead round in circles.
+    """Return the cells of the best path to each of some labels, or None if there is too little memory for it.
 
     Parameters
     ----------
     moves : Moves
     costs : Costs
-        Of two objectives that do not depend on headings.
+        Of objectives that do not depend on headings.
     closed : numpy.ndarray of int32, shape (n, 2)
-        Cells and parents of the labels, those of each cell in ascending order of the first cost; the first is the start.
+        Cells and parents of the labels, those of each cell in ascending order of the first cost; the first is the start. None
+        but the ends may be missing among those that could lead to an end at its costs.
     ends : numpy.ndarray of int64, shape (N,)
         Numbers of labels that are non-dominated paths.
     meter : Meter
     """
-    entered = np.zeros(moves.n_cells, dtype=bool)
-    entered[closed[1:, 0]] = True
-    if (costs.step.min(axis=(1, 2))[:, None] + costs.field == 0).all(axis=0)[entered].any():
-        return None
-    if meter.n_fixed + len(closed) * (_BYTES_OF_CLOSED + _BYTES_OF_LEADING) >= meter.memory:
+    same_steps = costs.step.min(axis=(1, 2)).any()
+    of_closed = _BYTES_OF_CLOSED + 8 * len(costs.step)
+    of_leading = _BYTES_OF_LEADING + (0 if same_steps else _BYTES_OF_STEPS)
+    if meter.n_fixed + len(closed) * (of_closed + of_leading) >= meter.memory:
         return None
     heading_of = np.full((3, 3), -1)
     heading_of[HEADINGS[:, 1] + 1, HEADINGS[:, 0] + 1] = np.arange(8)
@@ -59,17 +62,23 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
     at_a_time = max(_LEAST_AT_A_TIME, int(len(closed) * _SHARE_AT_A_TIME))
     paths: list[np.ndarray] = []
     labels: Any
+    steps: Any
     while len(paths) < len(end):
         # From here on labels are known by their place in the order of the cells, and those that lead to the ends by their slot.
         labels, parents, n = _leading_to(end[len(paths) :], at_a_time, cell, spent, first, *grid, slot)
-        order = np.lexsort((spent[labels, 1], spent[labels, 0]))
+        if same_steps:
+            order = np.lexsort(spent[labels].T[::-1])
+        else:
+            steps = _fewest_steps(parents, slot[start])
+            parents[(parents >= 0) & (steps[parents] + 1 != steps[:, None])] = -1
+            order = np.argsort(steps, kind="stable")
         turn = np.full((len(labels), 8), _NEVER, dtype=np.int32)
         before = np.full((len(labels), 8), -1, dtype=np.int8)
         _least_turns(order, parents, slot[start], turn_units(), turn, before)
         cells = cell[labels]
         paths += [_trace(cells, parents, slot[start], turn, before, slot[k]) for k in end[len(paths) : len(paths) + n]]
         slot[labels] = -1
-        meter.note(len(closed), len(closed) * _BYTES_OF_CLOSED + len(labels) * _BYTES_OF_LEADING)
+        meter.note(len(closed), len(closed) * of_closed + len(labels) * of_leading)
     return paths
 
 
@@ -91,16 +100,16 @@ def _grouped(closed, n_cells):
 
 @kernel
 def _spent(closed, place, width, heading_of, step, field):
-    """Return the cell, int32, shape (n,), and the costs, int64, shape (n, 2), of the label at each place."""
+    """Return the cell, int32, shape (n,), and the costs, int64, shape (n, k), of the label at each place."""
     cells = np.empty(len(closed), dtype=np.int32)
     cells[place[0]] = closed[0, 0]
-    spent = np.zeros((len(closed), 2), dtype=np.int64)
+    spent = np.zeros((len(closed), len(step)), dtype=np.int64)
     for k in range(1, len(closed)):
         cell = closed[k, 0]
         parent = closed[k, 1]
         before = closed[parent, 0]
         m = heading_of[cell // width - before // width + 1, cell % width - before % width + 1]
-        for i in range(2):
+        for i in range(len(step)):
             spent[place[k], i] = spent[place[parent], i] + step[i, 8, m] + field[i, cell]
         cells[place[k]] = cell
     return cells, spent
@@ -124,10 +133,14 @@ def _find_parents(label, cell, spent, first, legal, offsets, step, field, parent
                 low = middle + 1
             else:
                 high = middle
-        if low == first[before + 1] or spent[low, 0] != wanted:
-            continue
-        if spent[low, 1] == spent[label, 1] - step[1, 8, m] - field[1, here]:
-            parents[m] = low
+        while low < first[before + 1] and spent[low, 0] == wanted:
+            same = True
+            for i in range(1, len(step)):
+                same = same and spent[low, i] == spent[label, i] - step[i, 8, m] - field[i, here]
+            if same:
+                parents[m] = low
+                break
+            low += 1
 
 
 @kernel
@@ -174,6 +187,41 @@ def _doubled(array):
     larger = np.empty((2 * array.shape[0], *array.shape[1:]), dtype=array.dtype)
     larger[: array.shape[0]] = array
     return larger
+
+
+@kernel
+def _fewest_steps(parents, start):
+    """Return the fewest steps of a path to each label, int32, shape (n,), by a breadth-first search."""
+    first = np.zeros(len(parents) + 1, dtype=np.int64)
+    for i in range(len(parents)):
+        for m in range(8):
+            if parents[i, m] >= 0:
+                first[parents[i, m] + 1] += 1
+    for i in range(len(parents)):
+        first[i + 1] += first[i]
+    following = first.copy()
+    children = np.empty(first[len(parents)], dtype=np.int32)
+    for i in range(len(parents)):
+        for m in range(8):
+            if parents[i, m] >= 0:
+                children[following[parents[i, m]]] = i
+                following[parents[i, m]] += 1
+    steps = np.full(len(parents), -1, dtype=np.int32)
+    queue = np.empty(len(parents), dtype=np.int32)
+    queue[0] = start
+    steps[start] = 0
+    n = 1
+    k = 0
+    while k < n:
+        label = queue[k]
+        k += 1
+        for j in range(first[label], first[label + 1]):
+            child = children[j]
+            if steps[child] < 0:
+                steps[child] = steps[label] + 1
+                queue[n] = child
+                n += 1
+    return steps
 
 
 @kernel

@@ -7,6 +7,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.smooth import smoothest_paths
 from pymoo_gridpath.exact.two import CLOSED_FULL, DIRECT, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow, trace
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
@@ -21,6 +22,9 @@ _POPS_AT_A_TIME = 2**17
 
 def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
     """Return the exact front of three objectives.
+
+    Of paths with the same costs it holds the one that `smoothest_paths` chooses, as long as memory lasts; any one if a cost
+    depends on headings.
 
     Labels are popped in lexicographic order, so that the first objective needs no comparison: a label is dominated if and only
     if one of the pairs (g2, g3) closed so far at its state is. With headings, a pair counts for the other headings of the
@@ -45,7 +49,7 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     meter.n_fixed = search.n_fixed
     if not meter.message:
         search.run(meter)
-    return Front(search.paths(), search.points())
+    return Front(search.paths() if meter.message else search.smoothest_paths(meter), search.points())
 
 
 class _Search:
@@ -81,7 +85,7 @@ class _Search:
                 state = 8 * cell + m if self.costs.with_heading else cell
                 f = self.costs.step[:, 8, m] + self.costs.field[:, cell] + self.bounds[state]
                 if f.max() < UNREACHABLE:
-                    push(self.heap, self.counts[N_OPEN], f[0], f[1], f[2], (8 * cell + m) << 32)
+                    push(self.heap, self.counts[N_OPEN], f[0], f[1], 2 * f[2] + (cell == self.goal), (8 * cell + m) << 32)
                     self.counts[N_OPEN] += 1
 
     def run(self, meter: Meter) -> None:
@@ -131,6 +135,16 @@ class _Search:
     def paths(self) -> list[np.ndarray]:
         """Return the cells of the paths found."""
         return [trace(self.closed, int(number)) for number in self.found[: self.counts[N_FOUND], 0]]
+
+    def smoothest_paths(self, meter: Meter) -> list[np.ndarray]:
+        """Return the cells of the paths found, or of better ones with the same costs."""
+        if self.costs.with_heading:
+            return self.paths()
+        # What the search alone needed has served.
+        self.heap = self.nodes = self.heap[:0].copy()
+        closed, ends = self.closed[: self.counts[N_CLOSED]], self.found[: self.counts[N_FOUND], 0]
+        paths = smoothest_paths(self.moves, self.costs, closed, ends, meter)
+        return self.paths() if paths is None else paths
 
 
 @kernel
@@ -271,7 +285,8 @@ def search_three(
     nodes : int64, shape (n, 3)
         Pairs and the number of the next node.
     heap : int64, shape (n, 4)
-        Open labels: f1, f2, f3 and ``(8 * cell + heading) << 32 | parent``.
+        Open labels: f1, f2, ``2 * f3`` (plus 1 at the goal, which so comes after all that is equal, see `smoothest_paths`) and
+        ``(8 * cell + heading) << 32 | parent``.
     closed : int32, shape (n, 2)
         Closed labels: cell and number of the parent.
     found : int64, shape (n, 4)
@@ -301,7 +316,7 @@ def search_three(
             status = PAUSED
             break
         pops += 1
-        f1, f2, f3, load = heap[0, 0], heap[0, 1], heap[0, 2], heap[0, 3]
+        f1, f2, f3, load = heap[0, 0], heap[0, 1], heap[0, 2] >> 1, heap[0, 3]
         drop_first(heap, n)
         n -= 1
         heading = (load >> 32) & 7
@@ -352,7 +367,7 @@ def search_three(
             next_f3 = next3 + bounds[next_state, 2]
             if covered(lists, nodes, ends, next_f2, next_f3):
                 continue
-            push(heap, n, next1, next_f2, next_f3, (8 * next_cell + m) << 32 | n_closed)
+            push(heap, n, next1, next_f2, 2 * next_f3 + (next_cell == goal), (8 * next_cell + m) << 32 | n_closed)
             n += 1
         n_closed += 1
     counts[N_OPEN], counts[N_CLOSED] = n, n_closed

@@ -77,8 +77,8 @@ DIRECT = _direct_headings()
 def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
     """Return the exact front of two objectives.
 
-    Of paths with the same costs it holds the one that turns least, as long as memory lasts; any one if a cost depends on
-    headings.
+    Of paths with the same costs it holds the one that `smoothest_paths` chooses, as long as memory lasts; any one if a cost
+    depends on headings.
 
     Parameters
     ----------
@@ -106,10 +106,10 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
         search.run(meter, tolerance)
         found.append(Front(search.paths(), search.points()))
         known = _non_dominated(np.concatenate([known, found[-1].points]))
-    return _merged(found) if meter.message else Front(search.smoothest_paths(meter), search.points())
+    return merged(found) if meter.message else Front(search.smoothest_paths(meter), search.points())
 
 
-def _merged(fronts: list[Front]) -> Front:
+def merged(fronts: list[Front]) -> Front:
     """Return what is non-dominated of several fronts."""
     points = np.concatenate([front.points for front in fronts])
     paths = [path for front in fronts for path in front.paths]
@@ -218,7 +218,7 @@ class _Search:
         return [trace(self.closed, int(number)) for number in self.found[: self.counts[N_FOUND], 0]]
 
     def smoothest_paths(self, meter: Meter) -> list[np.ndarray]:
-        """Return the cells of the paths found, or of those with the same costs that turn less."""
+        """Return the cells of the paths found, or of better ones with the same costs."""
         # The labels that are still open have served.
         self.heap = np.empty((0, 3), dtype=np.int64)
         if self.costs.with_heading:

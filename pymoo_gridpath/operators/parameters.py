@@ -26,6 +26,8 @@ def in_range(name: str, value: Any, low: float, high: float, optional: bool = Fa
     if value is None and optional:
         return None
     try:
+        if isinstance(value, str | bytes):
+            raise TypeError
         found = number(value)
     except (TypeError, ValueError):
         raise GridPathError(f"{name} is {value!r}, expected a number from {low:g} to {high:g}") from None
@@ -55,6 +57,6 @@ def one_or_two(n_offsprings: int) -> int:
     GridPathError
         If it is not.
     """
-    if n_offsprings not in (1, 2):
-        raise GridPathError(f"n_offsprings is {n_offsprings}, expected 1 or 2")
-    return n_offsprings
+    if isinstance(n_offsprings, float) or n_offsprings not in (1, 2):
+        raise GridPathError(f"n_offsprings is {n_offsprings!r}, expected 1 or 2")
+    return int(n_offsprings)

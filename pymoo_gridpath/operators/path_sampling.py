@@ -83,6 +83,7 @@ class ReachableSampling(Sampling):
             weights[:, 0], weights[:, 1:] = FULL_WEIGHT, 1
         paths = paths_through(
             terrain,
+            problem.representation.moves,
             points=random_state.choice(points, n),
             trees=random_state.integers(0, n_trees, (n, 2)),
             weights=weights,
@@ -113,11 +114,11 @@ class ScalarizedSampling(Sampling):
 
     def _do(self, problem, n_samples, *args, random_state=None, **kwargs):
         assert random_state is not None
-        terrain, most = terrain_of(problem), max_cells(problem)
+        terrain, moves, most = terrain_of(problem), problem.representation.moves, max_cells(problem)
         searches = max(SEARCH_CELLS // len(terrain.legal), LEAST_SEARCHES)
         spread = spread_weights(problem, min(n_samples, searches), random_state)
         distinct, which = np.unique(spread, axis=0, return_inverse=True)
-        cheapest = cheapest_paths(terrain, distinct, np.zeros((len(distinct), 3), dtype=np.int64), most)
+        cheapest = cheapest_paths(terrain, moves, distinct, np.zeros((len(distinct), 3), dtype=np.int64), most)
         searches -= len(distinct)
         rows = np.arange(n_samples) % len(spread)
         weights, X = spread[rows], problem.representation.from_sequences(cheapest)[which.ravel()[rows]]
@@ -129,7 +130,7 @@ class ScalarizedSampling(Sampling):
             n = min(searches, len(again))
             searches -= n
             anew, changed = again[:n], again[n:]
-            X[anew] = problem.representation.from_sequences(cheapest_paths(terrain, weights[anew], noise[:n], most))
+            X[anew] = problem.representation.from_sequences(cheapest_paths(terrain, moves, weights[anew], noise[:n], most))
             if len(changed):
                 # The weights of other paths mix two cheapest paths; noise only where that brings nothing new.
                 noise[:, 0] *= k > 0

@@ -24,6 +24,9 @@ DEFAULT_PENALTY = 2.0
 # How long pareto_front() may take, since pymoo asks for it unbidden.
 PARETO_SECONDS = 60.0
 
+# Sums of the same costs in another order differ by no more than this share of themselves.
+_ROUNDING = 1e-12
+
 # Genes that are evaluated at a time.
 PART_SIZE = 12000
 
@@ -79,9 +82,9 @@ class GridPathProblem(Problem):
     ``pareto_front()`` and ``pareto_set()`` return the exact front of the legal paths, without penalties, and a path for each
     point (see `exact_front`; the first call computes both). They return None if an objective does not add up along a path,
     that is, if it is neither length nor turn and has no field; if there are more than three objectives; or, with a warning,
-    if ``max_seconds`` (60 by default) do not suffice or the representation cannot code a path of the front. pymoo asks for
-    the front of its own accord where it prints progress
-    (``verbose=True``), to show how far a run is from it.
+    if ``max_seconds`` (60 by default) do not suffice or, of three objectives, the representation cannot code a path of the
+    front. pymoo asks for the front of its own accord where it prints progress (``verbose=True``), to show how far a run is
+    from it.
 
     Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
     ``interfering_cells`` of each individual: ``pop.get("turn")``. It draws no random number.
@@ -130,7 +133,7 @@ class GridPathProblem(Problem):
         self.potential_limit = potential_limit
         self._check_obstacles()
         fields = [_checked(objective, grid) for objective in self.objectives]
-        if representation == CellSequence.name and axis == "auto":
+        if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
             # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
             costs = [field for field in fields if field is not None]
             spare = 2.0 if len(costs) > 1 or any(isinstance(objective, Turn) for objective in self.objectives) else 1.0
@@ -246,6 +249,13 @@ class GridPathProblem(Problem):
                 )
         return np.column_stack(F)
 
+    def over_limit(self, vulnerability: np.ndarray) -> np.ndarray:
+        """Return by how much vulnerabilities exceed the potential limit; 0 for sums that rounding alone sets apart from it."""
+        assert self.potential_limit is not None
+        over = np.asarray(vulnerability - self.potential_limit, dtype=float)
+        over[np.abs(over) <= _ROUNDING * self.potential_limit] = 0.0
+        return over
+
     def _evaluate(self, x, out, *args, **kwargs):
         # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
         n_parts = min(max(1, round(len(x) * self.n_var / PART_SIZE)), max(1, len(x)))
@@ -258,7 +268,7 @@ class GridPathProblem(Problem):
         else:
             k = self.objective_names.index("vulnerability")
             F[:, k] += self.penalty * interfering
-            out["G"] = F[:, [k]] - self.potential_limit
+            out["G"] = self.over_limit(F[:, [k]])
         out["F"] = F
         out["turn"] = turn
         out["interfering_cells"] = interfering

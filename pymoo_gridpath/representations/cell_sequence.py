@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import operator
 from collections.abc import Sequence
+from numbers import Real
 
 import numpy as np
 from scipy import sparse
@@ -18,6 +20,9 @@ from pymoo_gridpath.paths import CellPaths
 from pymoo_gridpath.representations.base import Representation, check_ends
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sequences import Sequences, cut_loops, mend
+
+# Fields whose sums are looked at for the default length of a row: as many as objectives of an exact front.
+_MOST_TOGETHER = 3
 
 
 class CellSequence(Representation):
@@ -43,9 +48,9 @@ class CellSequence(Representation):
         path would be dominated by that one. The other is 1.5 times the cells of a shortest
         path and 8 more.
     fields : sequence of numpy.ndarray, shape (height, width), optional
-        Costs of cells, the sums of which paths are to be scored by; there is room then for the cheapest paths in each, rather
-        than for the safest in the default potential. A problem that is given the representation by name passes those of its
-        objectives.
+        Costs of cells, the sums of which paths are to be scored by; there is room then for the cheapest paths in each, and in
+        the sum of any two or three of them, rather than for the safest in the default potential. A problem that is given the
+        representation by name passes those of its objectives.
     spare : float, default 1
         Factor on the default of ``max_cells``, 1 or more. Paths that turn little, and compromises between several fields, may
         be longer than the cheapest ones; a problem with such objectives that is given the representation by name passes 2.
@@ -86,8 +91,8 @@ class CellSequence(Representation):
     ):
         self.grid = grid
         self.start, self.goal = grid.check_query(start, goal)
-        if not spare >= 1.0:
-            raise GridPathError(f"spare is {spare}, expected a factor of 1 or more")
+        if not (isinstance(spare, Real) and 1.0 <= spare < math.inf):
+            raise GridPathError(f"spare is {spare!r}, expected a factor of 1 or more")
         self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells, fields, spare)
         self.n_var = self.max_cells
         self.xl = np.zeros(self.n_var, dtype=int)
@@ -207,7 +212,10 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
     if max_cells is None:
         reachable = np.count_nonzero(grid.regions == grid.regions.flat[start])
         fields = [np.maximum(field, 0.0) for field in fields] or [obstacle_potential(grid)]
-        safest = max(1 + math.floor(_safest_length(graph, field.ravel(), start, goal) + 1e-6) for field in fields)
+        fields = [field / (field.max() or 1.0) for field in fields]
+        # Of several together, too: a path that costs nothing in either may be longer than those that cost nothing in one.
+        together = [np.sum(some, axis=0) for n in range(1, _MOST_TOGETHER + 1) for some in itertools.combinations(fields, n)]
+        safest = max(1 + math.floor(_safest_length(graph, field.ravel(), start, goal) + 1e-6) for field in together)
         return min(math.ceil(spare * max(safest, math.ceil(1.5 * least) + 8)), int(reachable))
     try:
         given = operator.index(max_cells)

@@ -5,18 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
-from pymoo_gridpath.search.route import NOWHERE, descend, find_route, make_work, room, unwind
-from pymoo_gridpath.search.sequences import Sequences, append_without_loops
+from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.route import NOWHERE, find_route, make_work, room, unwind
+from pymoo_gridpath.search.sequences import Sequences, append_without_loops, mend
 from pymoo_gridpath.search.splice import write
 from pymoo_gridpath.search.terrain import Terrain, backwards
 
 
-def cheapest_paths(terrain: Terrain, weights: np.ndarray, noise: np.ndarray, max_cells: int) -> Sequences:
+def cheapest_paths(terrain: Terrain, moves: Moves, weights: np.ndarray, noise: np.ndarray, max_cells: int) -> Sequences:
     """Return cheapest paths from the start to the goal.
 
     Parameters
     ----------
     terrain : Terrain
+    moves : Moves
+        What it was made of.
     weights : numpy.ndarray of int64, shape (N, K)
     noise : numpy.ndarray of int64, shape (N, 3)
         See `find_route`, as for ``weights``.
@@ -28,17 +31,25 @@ def cheapest_paths(terrain: Terrain, weights: np.ndarray, noise: np.ndarray, max
     Sequences
         N legal paths.
     """
-    return Sequences(*_cheapest_paths(terrain, make_work(terrain), weights, noise, max_cells))
+    return _completed(Sequences(*_cheapest_paths(terrain, make_work(terrain), weights, noise, max_cells)), terrain, moves)
 
 
 def paths_through(
-    terrain: Terrain, points: np.ndarray, trees: np.ndarray, weights: np.ndarray, noise: np.ndarray, max_cells: int
+    terrain: Terrain,
+    moves: Moves,
+    points: np.ndarray,
+    trees: np.ndarray,
+    weights: np.ndarray,
+    noise: np.ndarray,
+    max_cells: int,
 ) -> Sequences:
     """Return paths through given cells, along trees of cheapest routes from the start and to the goal.
 
     Parameters
     ----------
     terrain : Terrain
+    moves : Moves
+        What it was made of.
     points : numpy.ndarray of int64, shape (N,)
         Useful cells of the terrain.
     trees : numpy.ndarray of int64, shape (N, 2)
@@ -56,7 +67,15 @@ def paths_through(
     """
     heads = _branches(terrain, points, trees[:, 0], weights, noise)
     tails = _branches(backwards(terrain), points, trees[:, 1], weights, noise)
-    return Sequences(*_join(terrain, make_work(terrain), *heads, *tails, max_cells))
+    return _completed(Sequences(*_join(make_work(terrain), *heads, *tails, max_cells)), terrain, moves)
+
+
+def _completed(paths: Sequences, terrain: Terrain, moves: Moves) -> Sequences:
+    """Return paths with a shortest one, which fits every row, in place of those without cells."""
+    if paths.lengths.all():
+        return paths
+    # Legal paths stay as they are where there is room enough.
+    return mend(paths, moves, terrain.start, terrain.goal, 2 * moves.n_cells)
 
 
 def _branches(terrain: Terrain, points: np.ndarray, trees: np.ndarray, weights: np.ndarray, noise: np.ndarray) -> Sequences:
@@ -74,6 +93,7 @@ def _branches(terrain: Terrain, points: np.ndarray, trees: np.ndarray, weights: 
 
 @kernel
 def _cheapest_paths(terrain, work, weights, noise, max_cells):
+    """Return cheapest paths, without the cells of those that are too long."""
     out, ends = np.empty(1024, dtype=np.int64), np.zeros(len(weights) + 1, dtype=np.int64)
     path = np.empty(1024, dtype=np.int64)
     path[0] = terrain.start
@@ -83,9 +103,8 @@ def _cheapest_paths(terrain, work, weights, noise, max_cells):
         n = 0
         if find_route(terrain, work, terrain.start, terrain.goal, weights[i], noise[i], everywhere, everywhere):
             path, n = unwind(terrain, work, terrain.start, terrain.goal, path, 1)
-        if n == 0 or n > max_cells:
-            path, n = descend(terrain, path, 1)
-        out, total = write(path, 0, n, out, total)
+        if n <= max_cells:
+            out, total = write(path, 0, n, out, total)
         ends[i + 1] = total
     return out[:total].copy(), ends
 
@@ -109,8 +128,8 @@ def _grow(terrain, work, points, trees, weights, noise):
 
 
 @kernel
-def _join(terrain, work, heads, head_ends, tails, tail_ends, max_cells):
-    """Return the paths of routes from the start to a cell and of those from the goal to the same cell."""
+def _join(work, heads, head_ends, tails, tail_ends, max_cells):
+    """Return the paths of routes from the start to a cell and of those from the goal to it, without cells if too long."""
     out, ends = np.empty(len(heads) + len(tails), dtype=np.int64), np.zeros(len(head_ends), dtype=np.int64)
     path = np.empty(1024, dtype=np.int64)
     total = 0
@@ -120,7 +139,6 @@ def _join(terrain, work, heads, head_ends, tails, tail_ends, max_cells):
         path, n = write(tail[::-1].copy(), 1, len(tail), path, n)
         out, total = append_without_loops(path, n, work.place, out, total)
         if total - ends[i] > max_cells:
-            path, n = descend(terrain, path, 1)
-            out, total = append_without_loops(path, n, work.place, out, ends[i])
+            total = ends[i]
         ends[i + 1] = total
     return out[:total].copy(), ends

@@ -43,7 +43,8 @@ class Terrain(NamedTuple):
     width, start, goal : int
         Width of the grid and indices of the two cells.
     straight, diagonal : int
-        Cost of a step in term 0.
+        Cost of a step in term 0, 1 or more. Where the best paths of the terms differ a lot, these numbers may be so small that
+        by them another path is the shortest than on a `plain_terrain`.
     fields : numpy.ndarray of int64, shape (n_cells, K - 1)
         Cost of entering each cell in the other terms.
     bounds : numpy.ndarray of int64, shape (n_cells, 2 * K)
@@ -161,7 +162,8 @@ def _scaled(moves: Moves, start: int, goal: int, costs: list[np.ndarray]) -> tup
     least, most = totals.min(axis=0), totals.max(axis=0)
     spans = np.maximum(most - least, LEAST_RANGE * np.maximum(most, np.array(peaks)))
     scale = LARGEST_COST / (np.array(peaks) / spans).max()
-    return round(scale / spans[0]), [
+    # Every step costs something, however long the paths, so that none wander.
+    return max(round(scale / spans[0]), 1), [
         np.rint(cost * (scale / span)).astype(np.int64) for cost, span in zip(costs, spans[1:], strict=True)
     ]
 

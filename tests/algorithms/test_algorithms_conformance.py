@@ -145,7 +145,7 @@ def test_operators_that_the_table_names_are_called(row, make_problem, arguments)
 @pytest.mark.parametrize("row", named(row for row in USABLE if not row.operators))
 def test_operators_that_an_algorithm_would_ignore_are_refused(row, make_problem):
     problem = make_problem()
-    with pytest.raises(CapabilityError, match=f"{row.name} takes no argument 'crossover'"):
+    with pytest.raises(CapabilityError, match=f"{row.name} takes no argument 'crossover', since it makes"):
         make_algorithm(row.name, problem, operators={"crossover": paper_operators(problem)["crossover"]})
 
 

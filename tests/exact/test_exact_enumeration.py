@@ -37,7 +37,9 @@ def objectives_of(grid, seed):
     """Return lists of objectives, and the fields of those that have one."""
     random_state = np.random.default_rng(seed)
     wet, steep = (Cost(name, random_state.integers(0, 20, size=grid.shape)) for name in ("wet", "steep"))
-    fields = {"vulnerability": obstacle_potential(grid), "wet": wet.values, "steep": steep.values}
+    # What costs something in few cells leaves many ways for nothing.
+    rare = Cost("rare", random_state.integers(0, 5, size=grid.shape) * (random_state.random(grid.shape) < 0.3))
+    fields = {"vulnerability": obstacle_potential(grid), "wet": wet.values, "steep": steep.values, "rare": rare.values}
     sets = [
         ("length", "vulnerability"),
         ("turn", "length"),
@@ -47,6 +49,9 @@ def objectives_of(grid, seed):
         (wet, "length", "turn"),
         ("vulnerability", "length", "turn"),
         ("length", wet, steep),
+        (rare,),
+        ("vulnerability", rare),
+        (rare, wet, "vulnerability"),
     ]
     return sets, fields
 
@@ -80,6 +85,7 @@ def enumerate_paths(grid, start, goal, headings):
 def scores(paths, fields):
     """Return every measure of paths by name."""
     measures = {
+        "cells": [len(cells) for cells, *_ in paths],
         "length": [straight + math.sqrt(2) * diagonal for _, straight, diagonal, _ in paths],
         "turn": [45.0 * turn for *_, turn in paths],
     }
@@ -147,12 +153,13 @@ def solvable_seeds():
     return seeds
 
 
-def assert_smoothest(F, turn, measures, names):
-    """Of all paths with the measures of a point, the one that is given turns least."""
+def assert_best(F, cells, turn, measures, names):
+    """Of all paths with the measures of a point, one of the fewest cells is given, and of these one that turns least."""
     scores = np.column_stack([measures[name] for name in names])
-    for point, given in zip(F, turn, strict=True):
+    others = np.column_stack([measures["cells"], measures["turn"]])
+    for point, *given in zip(F, cells, turn, strict=True):
         equal = np.isclose(scores, point, rtol=1e-12, atol=1e-12).all(axis=1)
-        assert given == np.array(measures["turn"])[equal].min()
+        assert given == min(others[equal].tolist())
 
 
 @pytest.mark.parametrize("part", range(10))
@@ -173,11 +180,36 @@ def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
             np.testing.assert_array_equal(out["F"], found.F)
             assert (out["interfering_cells"] == 0).all()
             sizes.append(len(expected))
-            if problem.objective_names[0] == "length" and problem.n_obj == 2:
-                assert_smoothest(found.F, out["turn"], measures, problem.objective_names)
+            if "turn" not in problem.objective_names:
+                cells = problem.representation.to_sequences(found.X).lengths
+                assert_best(found.F, cells, out["turn"], measures, problem.objective_names)
     # The test would say little if all fronts were single points.
     assert max(sizes) >= 4
     assert np.mean(np.array(sizes) > 1) > 0.2
+
+
+def test_the_front_of_rows_that_are_too_short_equals_enumeration(solvable_seeds):
+    n_cut = 0
+    for seed in solvable_seeds:
+        grid, start, goal, representation = random_case(seed)
+        if representation != "cells":
+            continue
+        sets, fields = objectives_of(grid, seed)
+        paths = enumerate_paths(grid, tuple(start), tuple(goal), range(8))
+        measures = scores(paths, {})
+        least = measures["cells"][int(np.argmin(measures["length"]))]
+        for max_cells in (least, least + 1, least + 3):
+            few = [path for path in paths if len(path[0]) <= max_cells]
+            short = scores(few, fields)
+            coding = CellSequence(grid, start, goal, max_cells=max_cells)
+            for objectives in [*(names for names in sets if len(names) < 3), ("turn",), ("vulnerability",)]:
+                problem = GridPathProblem(grid, start, goal, coding, objectives)
+                found, expected = exact_front(problem), front_of(short, problem.objective_names)
+                assert found.complete
+                np.testing.assert_allclose(found.F, expected, rtol=1e-12, atol=1e-12, err_msg=f"grid {seed}, {objectives}")
+                np.testing.assert_array_equal(problem.evaluate(found.X), found.F)
+                n_cut += "visit at most" in found.message
+    assert n_cut > 100
 
 
 def magnitudes(random_state, shape):

@@ -135,20 +135,33 @@ def test_more_than_three_objectives_are_refused():
         exact_front(problem)
 
 
-def test_points_for_which_a_row_is_too_short_are_left_out():
+def test_fronts_for_which_a_row_is_too_short():
+    """Of two objectives the front is that of the paths that fit; of three, points whose paths do not fit are left out."""
     grid = OccupancyGrid(np.pad(np.ones((3, 3)), ((3, 3), (3, 3))))
-    roomy, coding = GridPathProblem(grid, (0, 4), (8, 4), "cells"), CellSequence(grid, (0, 4), (8, 4), max_cells=9)
-    problem, whole = GridPathProblem(grid, (0, 4), (8, 4), coding), exact_front(roomy)
-    found = exact_front(problem)
-    fits = np.array([len(path.cells) <= 9 for path in TradeOffSet.from_genes(roomy, whole.X)])
-    assert whole.complete and not found.complete and 0 < fits.sum() < len(fits)
-    np.testing.assert_array_equal(found.F, whole.F[fits])
-    assert f"left out {(~fits).sum()} points" in found.message and "expected at most 9, the max_cells" in found.message
-    with pytest.warns(UserWarning, match="left out"):
-        assert problem.pareto_front() is None
-    # What breaks the limit is no part of the front, whether it fits or not.
-    limited = GridPathProblem(grid, (0, 4), (8, 4), coding, obstacles="limit", potential_limit=whole.F[:, 1].min() / 2)
-    assert exact_front(limited).complete
+    coding = CellSequence(grid, (0, 4), (8, 4), max_cells=9)
+    for objectives in (("length", "vulnerability"), ("length", "vulnerability", "turn")):
+        roomy, problem = (GridPathProblem(grid, (0, 4), (8, 4), rows, objectives) for rows in ("cells", coding))
+        whole, found = exact_front(roomy), exact_front(problem)
+        cells = roomy.representation.to_sequences(whole.X).lengths
+        fits = cells <= 9
+        assert whole.complete and 0 < fits.sum() < len(fits)
+        assert found.complete == (len(objectives) == 2)
+        if found.complete:
+            assert found.message == (
+                f"all {len(found.F)} points found of paths that visit at most 9 cells, the max_cells of the representation; "
+                f"without that limit the front has paths of up to {cells.max()}"
+            )
+            # A point that only longer paths dominate comes in besides.
+            assert len(found.F) == fits.sum() + 1 and {*map(tuple, whole.F[fits])} < {*map(tuple, found.F)}
+            np.testing.assert_array_equal(problem.pareto_front(), found.F)
+            continue
+        np.testing.assert_array_equal(found.F, whole.F[fits])
+        assert f"left out {(~fits).sum()} points" in found.message and "expected at most 9, the max_cells" in found.message
+        with pytest.warns(UserWarning, match="left out"):
+            assert problem.pareto_front() is None
+        # What breaks the limit is no part of the front, whether it fits or not.
+        options = {"obstacles": "limit", "potential_limit": whole.F[:, 1].min() / 2}
+        assert exact_front(GridPathProblem(grid, (0, 4), (8, 4), coding, objectives, **options)).complete
 
 
 @pytest.mark.parametrize("objectives", [("length", "turn"), ("turn", "vulnerability"), ("length", "vulnerability", "turn")])
@@ -165,6 +178,78 @@ def test_cells_have_room_for_paths_that_turn_little(objectives):
     assert front[:, objectives.index("turn")].min() == 180.0
 
 
+class Sum(Objective):
+    def __init__(self, name, field):
+        self.name = self.label = name
+        self._field = np.asarray(field, dtype=float)
+
+    def field(self, grid):
+        return self._field
+
+    def __call__(self, paths, sums=None):
+        return paths.total(sums)
+
+
+def test_ways_that_cost_nothing_lead_straight_to_the_goal_and_fit_default_rows():
+    """However far the search wanders over open land, where no cell costs anything."""
+    for size in (6, 13, 24, 40):
+        occupied = np.zeros((size, size), dtype=bool)
+        occupied[0, -1] = True
+        rare = np.zeros((size, size))
+        rare[size // 2, :-1:2] = 1.5
+        free = np.zeros((size, size))
+        grid = OccupancyGrid(occupied)
+        for objectives in (["vulnerability"], [Sum("rare", rare)], ["vulnerability", Sum("rare", rare), Sum("free", free)]):
+            problem = GridPathProblem(grid, (0, size - 1), (3, size - 1), "cells", objectives)
+            found = exact_front(problem)
+            assert found.complete and found.F.tolist() == [[0.0] * len(objectives)]
+            assert problem.decode(found.X).length.tolist() == [3.0]
+
+
+def test_sums_that_rounding_alone_sets_apart_are_the_same():
+    """0.1 + 0.2 + 0.3 on one way round a block, 0.3 + 0.2 + 0.1 on the other; one cost is rounded since a third is so dear."""
+    occupied = np.zeros((4, 5), dtype=bool)
+    occupied[1, 1:4] = True
+    for rows in ((0, 2), (2, 0)):
+        a, b = np.zeros((4, 5)), np.zeros((4, 5))
+        a[rows[0], 1:4], a[rows[1], 1:4] = [0.1, 0.2, 0.3], [0.3, 0.2, 0.1]
+        a[3], b[3] = 9, 1e20
+        for dear, cheap in (rows, rows[::-1]):
+            b[dear, 1:4], b[cheap, 1:4] = 2.5, 0.1
+            problem = GridPathProblem(OccupancyGrid(occupied), (0, 1), (4, 1), "cells", [Sum("a", a), Sum("b", b)])
+            np.testing.assert_allclose(exact_front(problem).F, [[0.6, 0.3]])
+
+
+def test_a_potential_limit_is_kept_by_sums_that_rounding_alone_sets_apart_from_it():
+    occupied = np.zeros((3, 5), dtype=bool)
+    occupied[1, 1:4] = True
+    for rows in ((0, 2), (2, 0)):
+        cost = np.zeros((3, 5))
+        cost[rows[0], 1:4], cost[rows[1], 1:4] = [0.1, 0.2, 0.3], [0.3, 0.2, 0.1]
+        objectives = ["length", Sum("vulnerability", cost)]
+        for limit, expected in ((0.6, 1), (0.6 + 1e-9, 1), (0.6 - 1e-9, 0)):
+            problem = GridPathProblem(
+                OccupancyGrid(occupied), (0, 1), (4, 1), "cells", objectives, obstacles="limit", potential_limit=limit
+            )
+            found = exact_front(problem)
+            assert len(found.F) == expected
+            feasible = problem.evaluate(found.X, return_as_dictionary=True)["G"] <= 0 if expected else []
+            assert np.all(feasible)
+
+
+@pytest.mark.parametrize("max_labels", [20, 30, 40, 50])
+def test_a_monotone_path_with_a_detour_counts_as_the_direct_way(max_labels):
+    """Which its genes code; a search that has ended early may hold such paths."""
+    a, b = np.random.default_rng(1160).integers(0, 4, (2, 8, 8)) / 10
+    grid = OccupancyGrid(np.zeros((8, 8)))
+    problem = GridPathProblem(grid, (0, 0), (7, 7), objectives=[Sum("a", a), Sum("b", b)], axis="x")
+    found = exact_front(problem, Budget(max_labels=max_labels))
+    assert not found.complete and len(found.F) > 1
+    np.testing.assert_array_equal(problem.evaluate(found.X), found.F)
+    worse = (found.F[:, None] >= found.F).all(axis=2) & (found.F[:, None] > found.F).any(axis=2)
+    assert not worse.any()
+
+
 def test_what_is_no_path_problem_or_no_budget_is_refused():
     other = get_problem("zdt1")
     run = minimize(other, NSGA2(pop_size=4), ("n_gen", 1))
@@ -175,6 +260,12 @@ def test_what_is_no_path_problem_or_no_budget_is_refused():
     ):
         with pytest.raises(GridPathError, match="the problem is of the class ZDT1, expected a path problem"):
             use()
+    problem = GridPathProblem(OccupancyGrid(np.zeros((4, 4))), (0, 0), (3, 3))
+    with pytest.raises(GridPathError, match="budget is 3, expected a Budget"):
+        exact_front(problem, 3)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(GridPathError, match="max_labels is 1j, expected a number, zero or more"):
+        Budget(max_labels=1j)  # pyright: ignore[reportArgumentType]
+    assert exact_front(problem, Budget(max_memory=np.inf)).complete  # pyright: ignore[reportArgumentType]
     with pytest.raises(GridPathError, match="watch is 3, expected a function"):
         ExactFront(watch=3)
 

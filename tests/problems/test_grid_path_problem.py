@@ -212,6 +212,7 @@ def test_rows_longer_than_a_part_are_evaluated(monkeypatch):
         ({"objectives": None}, "objectives are None, expected names such as 'length', or Objective objects"),
         ({"representation": "real"}, "no representation 'real'"),
         ({"representation": 3}, "representation is 3, expected a name such as 'integer', or a Representation"),
+        ({"representation": np.zeros(2)}, r"representation is array\(.*\), expected a name such as 'integer'"),
         ({"grid": "office"}, "grid is of the class str, expected an OccupancyGrid"),
         ({"obstacles": "wall"}, "obstacles is 'wall', expected one of penalty, constraint, limit"),
         ({"penalty": -1}, "penalty is -1, expected a positive number"),

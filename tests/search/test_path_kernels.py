@@ -3,11 +3,13 @@
 from itertools import pairwise
 
 import numpy as np
-from hypothesis import given, settings
+import pytest
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from queries import SPIRAL, queries
 
 from pymoo_gridpath.representations import make_representation
+from pymoo_gridpath.search import terrain as terrains
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sampling import cheapest_paths, paths_through
 from pymoo_gridpath.search.sequences import Sequences, are_legal, cut_loops, mend
@@ -38,12 +40,12 @@ def terrain_of(query, name):
     return make_terrain(moves, moves.index(start), moves.index(goal), [rng.random(grid.shape)])
 
 
-def random_paths(terrain, rng, n=12):
+def random_paths(terrain, moves, rng, n=12):
     """Random legal paths without loops."""
     points = rng.choice(np.flatnonzero(terrain.useful), n)
     noise = np.stack([np.full(n, 8000), rng.integers(0, 2, n), rng.integers(0, 2**31, n)], axis=1)
     trees = np.stack([np.arange(n), rng.permutation(n)], axis=1)
-    return paths_through(terrain, points, trees, rng.integers(1, 1025, (n, 2)), noise, len(terrain.legal))
+    return paths_through(terrain, moves, points, trees, rng.integers(1, 1025, (n, 2)), noise, len(terrain.legal))
 
 
 def copies(*arrays):
@@ -89,7 +91,7 @@ def test_mending_makes_legal_paths_and_keeps_legal_ones(query, name):
     moves, terrain = moves_of(query, name), terrain_of(query, name)
     n_cells = moves.n_cells
     broken = joined([rng.integers(-5, n_cells + 5, rng.integers(0, 12)).tolist() for _ in range(15)])
-    legal = random_paths(terrain, rng)
+    legal = random_paths(terrain, moves, rng)
     for given_, keep in ((broken, False), (legal, True)):
         before = copies(*given_)
         mended = mend(given_, moves, terrain.start, terrain.goal)
@@ -138,7 +140,7 @@ def ends_of(moves):
 @given(queries(density=0.25), names)
 def test_children_of_a_splice_are_made_of_their_parents(query, name):
     terrain, rng = terrain_of(query, name), query[-1]
-    parents = random_paths(terrain, rng)
+    parents = random_paths(terrain, moves_of(query, name), rng)
     n = 30
     first, second = rng.integers(0, 12, n), rng.integers(0, 12, n)
     draws, weights = rng.random((n, 2)), rng.integers(1, 1025, (n, 2))
@@ -181,7 +183,7 @@ def test_a_splice_exchanges_stretches_and_joins_near_paths():
 @given(queries(density=0.2), names)
 def test_changed_paths_are_legal_and_changed_only_between_the_ends(query, name):
     terrain, rng = terrain_of(query, name), query[-1]
-    paths = random_paths(terrain, rng)
+    paths = random_paths(terrain, moves_of(query, name), rng)
     n, lengths = 12, paths.lengths
     begin = (rng.random(n) * (lengths - 1)).astype(np.int64)
     end = begin + 1 + (rng.random(n) * (lengths - 1 - begin)).astype(np.int64)
@@ -223,19 +225,42 @@ def test_stretches_are_rerouted_straightened_and_shifted():
 @settings(max_examples=30)
 @given(queries(density=0.25), names)
 def test_whole_paths_are_legal_and_lead_through_their_points(query, name):
-    terrain, rng = terrain_of(query, name), query[-1]
-    check(random_paths(terrain, rng), terrain)
+    moves, terrain, rng = moves_of(query, name), terrain_of(query, name), query[-1]
+    check(random_paths(terrain, moves, rng), terrain)
     weights = np.array([[1024, 1], [1, 1024]])
-    ends = cheapest_paths(terrain, weights, np.zeros((2, 3), dtype=np.int64), len(terrain.legal))
+    ends = cheapest_paths(terrain, moves, weights, np.zeros((2, 3), dtype=np.int64), len(terrain.legal))
     check(ends, terrain)
     # A point on the cheapest path does not lead away from it.
     points = np.array([rng.choice(path) for path in split(ends)])
     through = paths_through(
-        terrain, points, np.array([[0, 0], [1, 1]]), weights, np.zeros((2, 3), dtype=np.int64), len(terrain.legal)
+        terrain, moves, points, np.array([[0, 0], [1, 1]]), weights, np.zeros((2, 3), dtype=np.int64), len(terrain.legal)
     )
     check(through, terrain)
     assert all(point in path for point, path in zip(points, split(through), strict=True))
-    least = int(plain_terrain(moves_of(query, name), terrain.start, terrain.goal).bounds[terrain.start, 0])
-    short = cheapest_paths(terrain, weights, np.zeros((2, 3), dtype=np.int64), 1)
+    least = int(plain_terrain(moves, terrain.start, terrain.goal).bounds[terrain.start, 0])
+    short = cheapest_paths(terrain, moves, weights, np.zeros((2, 3), dtype=np.int64), 1)
     check(short, terrain)
     assert least > 0 and len(set(map(tuple, split(short)))) == 1, "what does not fit becomes a shortest path"
+
+
+@pytest.mark.parametrize("largest", [1, 2**4, 2**8, 2**14])
+@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(queries(density=0.25), names)
+def test_paths_fit_and_end_however_coarse_the_costs(monkeypatch, largest, query, name):
+    """As they are where the best paths of some terms are many thousand times as long as those of others."""
+    moves, rng = moves_of(query, name), query[-1]
+    start, goal = (moves.index(cell) for cell in query[1:3])
+    shortest = mend(joined([[]]), moves, start, goal)
+    with monkeypatch.context() as patched:
+        patched.setattr(terrains, "LARGEST_COST", largest)
+        terrain = make_terrain(moves, start, goal, [rng.random(moves.n_cells) ** 9, rng.random(moves.n_cells) ** 9])
+    assert terrain.straight >= 1 and terrain.diagonal >= 1
+    most, weights, noise = int(shortest.lengths[0]), rng.integers(1, 1025, (5, 3)), np.zeros((5, 3), dtype=np.int64)
+    points = rng.choice(np.flatnonzero(terrain.useful), 5)
+    trees = np.stack([np.arange(5), np.arange(5)], axis=1)
+    for paths in (
+        cheapest_paths(terrain, moves, weights, noise, most),
+        paths_through(terrain, moves, points, trees, weights, noise, most),
+    ):
+        check(paths, terrain)
+        assert paths.lengths.max() <= most
