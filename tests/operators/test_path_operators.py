@@ -157,9 +157,9 @@ def test_scalarised_searches_are_few(monkeypatch):
     searched = []
     cheapest_paths = path_sampling.cheapest_paths
 
-    def counted(terrain, weights, *args):
+    def counted(terrain, moves, weights, *args):
         searched.append(len(weights))
-        return cheapest_paths(terrain, weights, *args)
+        return cheapest_paths(terrain, moves, weights, *args)
 
     monkeypatch.setattr(path_sampling, "cheapest_paths", counted)
     problem = corner_to_corner("cells", 24, 0.1, objectives=("length",))
