@@ -14,8 +14,9 @@ from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import Front, front_of_two, merged
 from pymoo_gridpath.objectives import Length, Turn
 from pymoo_gridpath.representations.base import representation_of
-from pymoo_gridpath.search import Moves
+from pymoo_gridpath.search import HEADINGS, Moves
 from pymoo_gridpath.search.sequences import Sequences, cut_loops
+from pymoo_gridpath.search.terrain import steps_through
 
 # Lengths of paths across more cells could overflow.
 _MOST_CELLS = 2**24
@@ -28,6 +29,10 @@ _EQUAL = 1e-12
 
 # Rounded costs of paths below so many units are counted anew in a finer one.
 _FINE = 2**42
+
+# The heading of a step (dx, dy) at [dy, dx].
+_HEADING = np.full((3, 3), -1)
+_HEADING[HEADINGS[:, 1], HEADINGS[:, 0]] = np.arange(8)
 
 # A finer unit is worth a search if it is at most this share of the one before.
 _FINER = 1 / 16
@@ -45,7 +50,7 @@ class ExactResult:
         The front, in ascending order of the first objective, no point twice. If it is not complete, points that are mutually
         non-dominated: of two objectives the two ends of the front, as far as the unit tells that costs had to be rounded to and
         unless the time was too short even for these, and the best paths between them that were found, which may lie off the
-        front; of three a part of the front.
+        front; of three a part of the front. Where rows are too short for some paths of the front, any paths that fit.
     complete : bool
         Whether this is the whole front. If not, a budget was used up, or, of three objectives, the representation cannot code
         some of its paths (`CellSequence` with too small ``max_cells``).
@@ -110,8 +115,11 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter, set())
     seconds = meter.elapsed
     X, F, too_long = _scored(problem, parts, early=bool(meter.message))
+    longest = max(part.longest for part in parts)
+    short = f" that visit at most {_most_cells(problem)} cells, the max_cells of the representation"
+    short = short if problem.n_obj < 3 and longest > _most_cells(problem) else ""
     if meter.message:
-        message = f"ended early, {meter.message}; {counted(len(F), 'path')} found"
+        message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}"
     elif len(too_long):
         message = (
             f"left out {counted(len(too_long), 'point')}, whose paths visit up to {too_long.max()} cells, expected at most "
@@ -120,12 +128,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         )
     elif len(F):
         message = f"all {counted(len(F), 'point')} found"
-        longest = max(part.longest for part in parts)
-        if longest > _most_cells(problem):
-            message += (
-                f" of paths that visit at most {_most_cells(problem)} cells, the max_cells of the representation; without that "
-                f"limit the front has paths of up to {longest}"
-            )
+        if short:
+            message += f" of paths{short}; without that limit the front has paths of up to {longest}"
     else:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
     complete = not meter.message and len(too_long) == 0
@@ -208,21 +212,40 @@ def _front_of_short_paths(
 
     The number of steps is searched as one more objective.
     """
+    moves = moves.within(steps_through(moves, start, goal) < max_cells)
+    fronts = [front]
+    # Each objective alone is quick, so that there is something to keep if a budget ends the search for both.
+    for k in range(len(costs.step)):
+        found = front_of_two(moves, _with_steps(costs.take([k])), start, goal, meter)
+        fronts.append(
+            Front(found.paths, np.array([_costs_of(path, moves, costs) for path in found.paths]).reshape(-1, len(costs.step)))
+        )
+    if len(costs.step) == 2 and not meter.message:
+        found = front_of_three(moves, _with_steps(costs), start, goal, meter)
+        fronts.append(Front(found.paths, np.delete(found.points, 1, axis=1)))
+    paths = [path for one in fronts for path in one.paths]
+    points = np.concatenate([one.points[:, [0, -1]] for one in fronts])
+    short = np.flatnonzero([len(path) <= max_cells for path in paths])
+    return merged([Front([paths[i] for i in short], points[short])])
+
+
+def _with_steps(costs: Costs) -> Costs:
+    """Return costs with the number of steps among them, before the last one, which alone may depend on headings."""
     k = len(costs.step) - 1
-    # Before the last one, which alone may depend on headings.
-    costs = costs._replace(
+    return costs._replace(
         step=np.insert(costs.step, k, 1, axis=0),
         field=np.insert(costs.field, k, 0, axis=0),
         unit=np.insert(costs.unit, k, 1.0),
         rounded=np.insert(costs.rounded, k, False),
     )
-    found = (front_of_two if k == 0 else front_of_three)(moves, costs, start, goal, meter)
-    points = np.delete(found.points, k, axis=1)
-    both = [front, Front(found.paths, points[:, [0, -1]])]
-    short = [np.array([len(path) <= max_cells for path in one.paths], dtype=bool) for one in both]
-    return merged(
-        [Front([one.paths[i] for i in np.flatnonzero(few)], one.points[few]) for one, few in zip(both, short, strict=True)]
-    )
+
+
+def _costs_of(path: np.ndarray, moves: Moves, costs: Costs) -> np.ndarray:
+    """Return the costs of a path, int64, shape (k,), without that of the start cell."""
+    dx, dy = np.diff(moves.cells(path), axis=0).T
+    heading = _HEADING[dy, dx]
+    before = np.concatenate([[8], heading[:-1]])
+    return costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
 
 
 def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) -> np.ndarray | None:

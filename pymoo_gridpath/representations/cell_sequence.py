@@ -21,7 +21,7 @@ from pymoo_gridpath.representations.base import Representation, check_ends
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sequences import Sequences, cut_loops, mend
 
-# Fields whose sums are looked at for the default length of a row: as many as objectives of an exact front.
+# Of up to so many fields sums are looked at for the default length of a row: as many as an exact front has objectives.
 _MOST_TOGETHER = 3
 
 
@@ -49,8 +49,8 @@ class CellSequence(Representation):
         path and 8 more.
     fields : sequence of numpy.ndarray, shape (height, width), optional
         Costs of cells, the sums of which paths are to be scored by; there is room then for the cheapest paths in each, and in
-        the sum of any two or three of them, rather than for the safest in the default potential. A problem that is given the
-        representation by name passes those of its objectives.
+        any sum of them if there are two or three, rather than for the safest in the default potential. A problem that is given
+        the representation by name passes those of its objectives.
     spare : float, default 1
         Factor on the default of ``max_cells``, 1 or more. Paths that turn little, and compromises between several fields, may
         be longer than the cheapest ones; a problem with such objectives that is given the representation by name passes 2.
@@ -214,7 +214,8 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
         fields = [np.maximum(field, 0.0) for field in fields] or [obstacle_potential(grid)]
         fields = [field / (field.max() or 1.0) for field in fields]
         # Of several together, too: a path that costs nothing in either may be longer than those that cost nothing in one.
-        together = [np.sum(some, axis=0) for n in range(1, _MOST_TOGETHER + 1) for some in itertools.combinations(fields, n)]
+        sizes = range(1, 1 + (len(fields) if len(fields) <= _MOST_TOGETHER else 1))
+        together = (np.sum(some, axis=0) for n in sizes for some in itertools.combinations(fields, n))
         safest = max(1 + math.floor(_safest_length(graph, field.ravel(), start, goal) + 1e-6) for field in together)
         return min(math.ceil(spare * max(safest, math.ceil(1.5 * least) + 8)), int(reachable))
     try:

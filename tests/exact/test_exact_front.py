@@ -250,6 +250,22 @@ def test_a_monotone_path_with_a_detour_counts_as_the_direct_way(max_labels):
     assert not worse.any()
 
 
+def test_a_budget_keeps_paths_that_fit_into_rows_that_are_too_short():
+    grid, random_state = OccupancyGrid(np.zeros((64, 64))), np.random.default_rng(0)
+    costs = [Sum(name, random_state.integers(0, 4, (64, 64))) for name in ("a", "b")]
+    coding = CellSequence(grid, (0, 0), (63, 63), max_cells=70)
+    problem = GridPathProblem(grid, (0, 0), (63, 63), coding, costs)
+    whole = exact_front(problem)
+    assert whole.complete and whole.message.startswith(f"all {len(whole.F)} points found of paths that visit at most 70 cells")
+    # Enough for the front of all paths.
+    roomy = exact_front(GridPathProblem(grid, (0, 0), (63, 63), "cells", costs))
+    found = exact_front(problem, Budget(max_labels=roomy.n_labels + 100))
+    assert not found.complete and "paths found that visit at most 70 cells, the max_cells" in found.message
+    np.testing.assert_array_equal(problem.evaluate(found.X), found.F)
+    for k in range(2):
+        assert found.F[:, k].min() == whole.F[:, k].min()
+
+
 def test_what_is_no_path_problem_or_no_budget_is_refused():
     other = get_problem("zdt1")
     run = minimize(other, NSGA2(pop_size=4), ("n_gen", 1))
