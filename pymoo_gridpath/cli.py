@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from pymoo_gridpath.argument_types import folder, positive
-from pymoo_gridpath.compiled import COMPILED, on_compiling
+from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
@@ -54,7 +54,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except GridPathError as error:
         print(f"pymoo-gridpath: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemError) as error:
+        if not is_ctrl_c(error):
+            raise
         print("pymoo-gridpath: interrupted", file=sys.stderr)
         return EXIT_INTERRUPTED
     except BrokenPipeError:

@@ -36,6 +36,13 @@ def kernel(function: F) -> F:
         return numba.njit(nogil=True)(function)  # pyright: ignore[reportReturnType]
 
 
+def is_ctrl_c(error: BaseException | None) -> bool:
+    """Return whether Ctrl-C is behind an error: compiled code makes a SystemError of a KeyboardInterrupt."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
+
+
 @contextlib.contextmanager
 def on_compiling(tell: Callable[[], None]) -> Iterator[None]:
     """While open, call a function when numba begins to compile, the first time only.

@@ -293,6 +293,17 @@ def test_second_ctrl_c_ends_at_once(tmp_path):
     assert "stopping, and keeping what was found" in stderr and "Traceback" not in stderr
 
 
+def test_ctrl_c_in_compiled_code_ends_at_once(monkeypatch, capsys):
+    """A signal there comes as a SystemError, caused by KeyboardInterrupt."""
+
+    def interrupted(*args):
+        raise SystemError("a kernel returned a result with an exception set") from KeyboardInterrupt()
+
+    monkeypatch.setattr(cli, "shipped_maps", interrupted)
+    assert main(["maps"]) == 130
+    assert capsys.readouterr().err == "pymoo-gridpath: interrupted\n"
+
+
 def test_maps_lists_every_shipped_map(capsys):
     assert main(["maps"]) == 0
     out = capsys.readouterr().out

@@ -16,7 +16,7 @@ import moocore
 import numpy as np
 from pymoo.core.callback import Callback
 
-from pymoo_gridpath.compiled import COMPILED
+from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
 from pymoo_gridpath.study.plan import Task
 from pymoo_gridpath.study.record import History, RunRecord, to_bytes
@@ -42,7 +42,8 @@ def execute(task: Task) -> bytes:
     try:
         return to_bytes(_run(task, started))
     except (Exception, SystemExit) as error:
-        _let_ctrl_c_through(error)
+        if is_ctrl_c(error):
+            raise KeyboardInterrupt from error
         return failed_run(task, traceback.format_exc(), started, time.perf_counter() - begin)
 
 
@@ -125,16 +126,8 @@ def _warm_up(task: Task, problem) -> None:
     try:
         _search(problem, build_algorithm(spec, problem), task.seed, termination, Recorder(problem.objective_names))
     except Exception as error:  # the run itself will say so
-        _let_ctrl_c_through(error)
-
-
-def _let_ctrl_c_through(error: BaseException) -> None:
-    """Raise KeyboardInterrupt if that is what is behind an error: compiled code makes a SystemError of it."""
-    cause = error.__cause__
-    while cause is not None:
-        if isinstance(cause, KeyboardInterrupt):
-            raise cause
-        cause = cause.__cause__
+        if is_ctrl_c(error):
+            raise KeyboardInterrupt from error
 
 
 def _search(problem, algorithm, seed: int, termination, recorder: Recorder):
