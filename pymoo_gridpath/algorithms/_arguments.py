@@ -6,6 +6,8 @@ import copy
 import inspect
 from typing import Any
 
+import numpy as np
+
 from pymoo_gridpath.errors import CapabilityError, nearest
 
 # Arguments that a constructor lists, or hands on, and then sets itself or ignores.
@@ -68,6 +70,12 @@ def check(name: str, given, accepted) -> None:
     for key in given:
         if key not in accepted:
             raise CapabilityError(f"{name} takes no argument {key!r}; {nearest(key, sorted(set(accepted)), 'it takes')}")
+
+
+def check_whole(owner: str, name: str, value: Any, least: int = 1) -> None:
+    """Refuse an argument of an algorithm that is no whole number, or less than the least."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise CapabilityError(f"{name} is {value!r}, expected a whole number of at least {least} for {owner}")
 
 
 def fresh_defaults(accepted: dict[str, Any]) -> dict[str, Any]:

@@ -149,9 +149,9 @@ def build(
     **kwargs,
 ) -> Algorithm:
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
-    _check_number(row, "pop_size", pop_size, _least_pop_size(row, kwargs))
+    _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(row, kwargs))
     if kwargs.get("n_offsprings") is not None:
-        _check_number(row, "n_offsprings", kwargs["n_offsprings"], 1)
+        _arguments.check_whole(row.name, "n_offsprings", kwargs["n_offsprings"])
     cls = _class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     # These two classes need not be told: smoothness is an argument of this function.
@@ -191,11 +191,6 @@ def build(
     if isinstance(algorithm.__dict__.get("mating"), VariantDE):
         algorithm.mating = _whole_number_mating(algorithm)
     return algorithm
-
-
-def _check_number(row: Capability, name: str, value, least: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise CapabilityError(f"{name} is {value!r}, expected a whole number of at least {least} for {row.name}")
 
 
 def _least_pop_size(row: Capability, given: Mapping[str, Any]) -> int:

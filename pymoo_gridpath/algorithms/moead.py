@@ -10,6 +10,7 @@ from moocore import is_nondominated
 from pymoo.algorithms.moo.moead import MOEAD, default_decomp
 from scipy.spatial.distance import cdist
 
+from pymoo_gridpath.algorithms._arguments import check_whole
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators.individuals import ArrayPopulation
 from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection, knows_arrays
@@ -105,8 +106,8 @@ class SmoothMOEAD(MOEAD):
             raise CapabilityError(f"MOEA/D needs two or more reference directions as rows, got shape {ref_dirs.shape}")
         given = {"n_replace": n_replace, "batch_size": batch_size, "n_neighbors": kwargs.get("n_neighbors")}
         for name, value in given.items():
-            if value is not None and (isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1):
-                raise CapabilityError(f"{name} is {value!r}, expected a whole number of at least 1")
+            if value is not None:
+                check_whole("MOEAD", name, value)
         super().__init__(ref_dirs=ref_dirs, **kwargs)
         self.smoothness = smoothness
         self.normalize = normalize

@@ -13,8 +13,8 @@ from pymoo_gridpath.exact.costs import Costs, integer_costs
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import Front, front_of_two, merged
 from pymoo_gridpath.objectives import Length, Turn
-from pymoo_gridpath.representations.base import representation_of
-from pymoo_gridpath.search import HEADINGS, Moves
+from pymoo_gridpath.representations.base import max_cells, representation_of
+from pymoo_gridpath.search import HEADING_OF, Moves
 from pymoo_gridpath.search.sequences import Sequences, cut_loops
 from pymoo_gridpath.search.terrain import steps_through
 
@@ -29,10 +29,6 @@ _EQUAL = 1e-12
 
 # Rounded costs of paths below so many units are counted anew in a finer one.
 _FINE = 2**42
-
-# The heading of a step (dx, dy) at [dy, dx].
-_HEADING = np.full((3, 3), -1)
-_HEADING[HEADINGS[:, 1], HEADINGS[:, 0]] = np.arange(8)
 
 # A finer unit is worth a search if it is at most this share of the one before.
 _FINER = 1 / 16
@@ -116,14 +112,14 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     seconds = meter.elapsed
     X, F, too_long = _scored(problem, parts, early=bool(meter.message))
     longest = max(part.longest for part in parts)
-    short = f" that visit at most {_most_cells(problem)} cells, the max_cells of the representation"
-    short = short if problem.n_obj < 3 and longest > _most_cells(problem) else ""
+    short = f" that visit at most {max_cells(problem)} cells, the max_cells of the representation"
+    short = short if problem.n_obj < 3 and longest > max_cells(problem) else ""
     if meter.message:
         message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}"
     elif len(too_long):
         message = (
             f"left out {counted(len(too_long), 'point')}, whose paths visit up to {too_long.max()} cells, expected at most "
-            f"{_most_cells(problem)}, the max_cells of the representation; give CellSequence a larger one; "
+            f"{max_cells(problem)}, the max_cells of the representation; give CellSequence a larger one; "
             f"{counted(len(F), 'point')} found"
         )
     elif len(F):
@@ -134,12 +130,6 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
     complete = not meter.message and len(too_long) == 0
     return ExactResult(X, F, complete, message, meter.n_labels, meter.n_bytes, seconds)
-
-
-def _most_cells(problem) -> int:
-    """Return how many cells a path can visit that the problem's representation codes."""
-    representation = problem.representation
-    return getattr(representation, "max_cells", representation.moves.n_cells)
 
 
 def _place(objective) -> int:
@@ -188,9 +178,9 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: s
         # A single objective is searched as two equal ones.
         front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
     longest = max(map(len, front.paths), default=0)
-    if problem.n_obj < 3 and longest > _most_cells(problem) and not meter.message:
+    if problem.n_obj < 3 and longest > max_cells(problem) and not meter.message:
         whole = front.points
-        front = _front_of_short_paths(front, moves, costs.take(order), start, goal, _most_cells(problem), meter)
+        front = _front_of_short_paths(front, moves, costs.take(order), start, goal, max_cells(problem), meter)
         if np.array_equal(front.points, whole):
             longest = max(map(len, front.paths))
     points = front.points[:, np.argsort(order)] + costs.field[:, start]
@@ -205,14 +195,12 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: s
     return parts
 
 
-def _front_of_short_paths(
-    front: Front, moves: Moves, costs: Costs, start: int, goal: int, max_cells: int, meter: Meter
-) -> Front:
-    """Return the front of the paths that visit at most ``max_cells`` cells, for one or two objectives and that of all paths.
+def _front_of_short_paths(front: Front, moves: Moves, costs: Costs, start: int, goal: int, most: int, meter: Meter) -> Front:
+    """Return the front of the paths that visit at most ``most`` cells, for one or two objectives and that of all paths.
 
     The number of steps is searched as one more objective.
     """
-    moves = moves.within(steps_through(moves, start, goal) < max_cells)
+    moves = moves.within(steps_through(moves, start, goal) < most)
     fronts = [front]
     # Each objective alone is quick, so that there is something to keep if a budget ends the search for both.
     for k in range(len(costs.step)):
@@ -225,7 +213,7 @@ def _front_of_short_paths(
         fronts.append(Front(found.paths, np.delete(found.points, 1, axis=1)))
     paths = [path for one in fronts for path in one.paths]
     points = np.concatenate([one.points[:, [0, -1]] for one in fronts])
-    short = np.flatnonzero([len(path) <= max_cells for path in paths])
+    short = np.flatnonzero([len(path) <= most for path in paths])
     return merged([Front([paths[i] for i in short], points[short])])
 
 
@@ -243,7 +231,7 @@ def _with_steps(costs: Costs) -> Costs:
 def _costs_of(path: np.ndarray, moves: Moves, costs: Costs) -> np.ndarray:
     """Return the costs of a path, int64, shape (k,), without that of the start cell."""
     dx, dy = np.diff(moves.cells(path), axis=0).T
-    heading = _HEADING[dy, dx]
+    heading = HEADING_OF[dy + 1, dx + 1]
     before = np.concatenate([[8], heading[:-1]])
     return costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
 

@@ -16,7 +16,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.search import HEADINGS, Moves, turn_units
+from pymoo_gridpath.search import HEADING_OF, Moves, turn_units
 
 # More than any path turns.
 _NEVER = np.iinfo(np.int32).max // 2
@@ -51,10 +51,8 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
     of_leading = _BYTES_OF_LEADING + (0 if same_steps else _BYTES_OF_STEPS)
     if meter.n_fixed + len(closed) * (of_closed + of_leading) >= meter.memory:
         return None
-    heading_of = np.full((3, 3), -1)
-    heading_of[HEADINGS[:, 1] + 1, HEADINGS[:, 0] + 1] = np.arange(8)
     first, place = _grouped(closed, moves.n_cells)
-    cell, spent = _spent(closed, place, moves.width, heading_of, costs.step, costs.field)
+    cell, spent = _spent(closed, place, moves.width, HEADING_OF, costs.step, costs.field)
     start, end = place[0], place[ends]
     del place
     grid = moves.legal, moves.offsets, costs.step, costs.field

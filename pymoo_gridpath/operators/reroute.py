@@ -10,7 +10,8 @@ from pymoo.core.mutation import Mutation
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.parameters import in_range, whole
 from pymoo_gridpath.operators.path_sampling import noise_of, random_stretches
-from pymoo_gridpath.operators.terrain import max_cells, paths_of, random_weights, terrain_of
+from pymoo_gridpath.operators.terrain import paths_of, random_weights, terrain_of
+from pymoo_gridpath.representations.base import max_cells
 from pymoo_gridpath.search.terrain import FULL_WEIGHT
 from pymoo_gridpath.search.vary import REROUTE, SHIFT, STRAIGHTEN, Changes, vary
 

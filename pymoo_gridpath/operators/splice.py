@@ -6,7 +6,8 @@ import numpy as np
 from pymoo.core.crossover import Crossover
 
 from pymoo_gridpath.operators.parameters import in_range, one_or_two, whole
-from pymoo_gridpath.operators.terrain import max_cells, paths_of, random_weights, terrain_of
+from pymoo_gridpath.operators.terrain import paths_of, random_weights, terrain_of
+from pymoo_gridpath.representations.base import max_cells
 from pymoo_gridpath.search.splice import splice
 
 

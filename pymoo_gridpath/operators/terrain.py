@@ -7,7 +7,7 @@ import weakref
 import numpy as np
 
 from pymoo_gridpath.objectives import Length
-from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search.sequences import Sequences, are_legal, mend
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
 
@@ -42,12 +42,6 @@ def paths_of(problem, X: np.ndarray) -> Sequences:
     if are_legal(paths, terrain).all():
         return paths
     return mend(paths, representation.moves, terrain.start, terrain.goal, max_cells(problem))
-
-
-def max_cells(problem) -> int:
-    """Return the most cells that a path of the problem's representation can visit."""
-    representation = problem.representation
-    return getattr(representation, "max_cells", representation.moves.n_cells)
 
 
 def random_weights(problem, n: int, random_state) -> np.ndarray:

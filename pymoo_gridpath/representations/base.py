@@ -162,6 +162,12 @@ def representation_of(problem) -> Representation:
     return representation
 
 
+def max_cells(problem) -> int:
+    """Return the most cells that a path of the problem's representation can visit."""
+    representation = problem.representation
+    return getattr(representation, "max_cells", representation.moves.n_cells)
+
+
 class MonotoneRepresentation(Representation):
     """Base of the codings of Ahmed and Deb (2013, section 2): one step to the next column a gene.
 

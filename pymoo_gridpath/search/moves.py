@@ -12,6 +12,10 @@ from pymoo_gridpath.grid import OccupancyGrid
 #: The step (dx, dy) of each heading, counter-clockwise from the right in steps of 45 degrees; odd ones are diagonal.
 HEADINGS = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)])
 
+#: The heading of a step (dx, dy) at [dy + 1, dx + 1].
+HEADING_OF = np.full((3, 3), -1)
+HEADING_OF[HEADINGS[:, 1] + 1, HEADINGS[:, 0] + 1] = np.arange(8)
+
 #: Whether each heading is diagonal.
 DIAGONAL = np.arange(8) % 2 == 1
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import multiprocessing
 import os
 import signal
@@ -153,7 +154,7 @@ def _begin_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     # What every run needs, so that the first takes no longer than others.
-    import pymoo_gridpath.study.execute  # noqa: F401
+    importlib.import_module("pymoo_gridpath.study.execute")
 
 
 def _end_with_parent() -> None:
@@ -221,7 +222,7 @@ def dask_executor(address: str, timeout: float = 30.0) -> StudyExecutor:
         cannot import this package, or has other versions of what decides about the results than this process.
     """
     try:
-        import distributed  # noqa: F401
+        importlib.import_module("distributed")
     except ImportError as error:
         raise GridPathError(
             f"a Dask cluster needs the package distributed, which cannot be imported ({error}); "

@@ -7,30 +7,16 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from exact_fronts import Cost
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.fields import obstacle_potential
-from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.representations import CellSequence
 
 STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
 N_GRIDS = 500
-
-
-class Cost(Objective):
-    """The sum of random whole costs of cells, which lead to larger fronts, and to more ties, than potentials do."""
-
-    def __init__(self, name, values):
-        self.name = self.label = name
-        self.values = values
-
-    def field(self, grid):
-        return self.values
-
-    def __call__(self, paths, sums):
-        return paths.total(sums).astype(float)
 
 
 def objectives_of(grid, seed):
