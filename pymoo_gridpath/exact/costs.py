@@ -35,8 +35,6 @@ class Costs(NamedTuple):
         Cost of a step along heading m (last index) after one along heading h (8: none before).
     field : numpy.ndarray of int64, shape (k, n_cells)
         Cost of entering each cell.
-    with_heading : bool
-        Whether some cost depends on the heading before a step.
     unit : numpy.ndarray of float, shape (k,)
         What a cost of 1 is in the objective.
     rounded : numpy.ndarray of bool, shape (k,)
@@ -45,16 +43,18 @@ class Costs(NamedTuple):
 
     step: np.ndarray
     field: np.ndarray
-    with_heading: bool
     unit: np.ndarray
     rounded: np.ndarray
+
+    @property
+    def with_heading(self) -> bool:
+        """Whether some cost depends on the heading before a step."""
+        return bool((self.step[:, :8] != self.step[:, :1]).any())
 
     def take(self, order) -> Costs:
         """Return the costs of some objectives, in that order."""
         order = list(order)
-        return Costs(
-            self.step[order].copy(), self.field[order].copy(), self.with_heading, self.unit[order], self.rounded[order]
-        )
+        return Costs(self.step[order].copy(), self.field[order].copy(), self.unit[order], self.rounded[order])
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Return points, shape (N, k), in the units of the objectives: the same for equal sums in whatever unit."""
@@ -98,7 +98,7 @@ def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = N
             unit[k] = TURN_UNIT
         else:
             field[k], unit[k], rounded[k] = _field(objective, grid, usable)
-    return Costs(step, field, any(type(objective) is Turn for objective in objectives), unit, rounded)
+    return Costs(step, field, unit, rounded)
 
 
 def _field(objective: Objective, grid: OccupancyGrid, usable: np.ndarray) -> tuple[np.ndarray, float, bool]:

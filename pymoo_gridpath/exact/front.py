@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import moocore
 import numpy as np
@@ -11,12 +12,11 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import Costs, integer_costs
 from pymoo_gridpath.exact.three import front_of_three
-from pymoo_gridpath.exact.two import Front, front_of_two, merged
+from pymoo_gridpath.exact.two import Front, front_of_two
 from pymoo_gridpath.objectives import Length, Turn
 from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search import HEADING_OF, Moves
-from pymoo_gridpath.search.sequences import Sequences, cut_loops
-from pymoo_gridpath.search.terrain import steps_through
+from pymoo_gridpath.search.sequences import Sequences
 
 # Lengths of paths across more cells could overflow.
 _MOST_CELLS = 2**24
@@ -48,10 +48,9 @@ class ExactResult:
         unless the time was too short even for these, and the best paths between them that were found, which may lie off the
         front; of three a part of the front. Where rows are too short for some paths of the front, any paths that fit.
     complete : bool
-        Whether this is the whole front. If not, a budget was used up, or, of three objectives, the representation cannot code
-        some of its paths (`CellSequence` with too small ``max_cells``).
+        Whether this is the whole front. If not, a budget was used up.
     message : str
-        How the search ended.
+        How the search ended, and whether the representation is too short for some paths of the front of all paths.
     n_labels, n_bytes : int
         The most labels at a time, and the bytes that they took, besides those of arrays of the size of the grid.
     seconds : float
@@ -71,8 +70,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     """Return the Pareto front of the legal paths of a problem.
 
     Legal paths cross no occupied cell and, with ``obstacles="limit"``, keep the potential limit. Those of a monotone
-    representation never turn back along its axis. Those of `CellSequence` visit no more than its ``max_cells`` cells; of one
-    and two objectives the front is that of these paths; of three it lacks points whose paths are longer, and is incomplete.
+    representation never turn back along its axis. Those of `CellSequence` visit no more than its ``max_cells`` cells.
 
     Parameters
     ----------
@@ -110,26 +108,24 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     meter = Meter(budget or Budget())
     parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter, set())
     seconds = meter.elapsed
-    X, F, too_long = _scored(problem, parts, early=bool(meter.message))
-    longest = max(part.longest for part in parts)
-    short = f" that visit at most {max_cells(problem)} cells, the max_cells of the representation"
-    short = short if problem.n_obj < 3 and longest > max_cells(problem) else ""
+    X, F = _scored(problem, parts, early=bool(meter.message))
+    longest, most = max(part.longest for part in parts), max_cells(problem)
+    short = f" with at most {most} cells, the max_cells of the representation" if longest > most else ""
     if meter.message:
         message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}"
-    elif len(too_long):
+    elif len(F) and short:
         message = (
-            f"left out {counted(len(too_long), 'point')}, whose paths visit up to {too_long.max()} cells, expected at most "
-            f"{max_cells(problem)}, the max_cells of the representation; give CellSequence a larger one; "
-            f"{counted(len(F), 'point')} found"
+            f"all {counted(len(F), 'point')} found of paths{short}; without that limit the front has paths of up to {longest}"
         )
     elif len(F):
         message = f"all {counted(len(F), 'point')} found"
-        if short:
-            message += f" of paths{short}; without that limit the front has paths of up to {longest}"
+    elif short:
+        message = (
+            f"no legal path{short}, keeps the potential limit of {problem.potential_limit:g}; paths of up to {longest} cells do"
+        )
     else:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
-    complete = not meter.message and len(too_long) == 0
-    return ExactResult(X, F, complete, message, meter.n_labels, meter.n_bytes, seconds)
+    return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds)
 
 
 def _place(objective) -> int:
@@ -138,8 +134,7 @@ def _place(objective) -> int:
     return 2 if type(objective) is Turn else 1
 
 
-@dataclass(frozen=True)
-class _Part:
+class _Part(NamedTuple):
     """What a search found.
 
     Attributes
@@ -152,7 +147,7 @@ class _Part:
     rounded : numpy.ndarray of bool, shape (n_obj,)
         Whether they had to be.
     longest : int
-        Cells of the longest path of the front; more than the representation can code if not all of its points are here.
+        Cells of the longest path of the front of all paths; more than the representation can code if some point is not here.
     """
 
     paths: list[np.ndarray]
@@ -177,16 +172,17 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: s
     else:
         # A single objective is searched as two equal ones.
         front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
-    longest = max(map(len, front.paths), default=0)
-    if problem.n_obj < 3 and longest > max_cells(problem) and not meter.message:
-        whole = front.points
-        front = _front_of_short_paths(front, moves, costs.take(order), start, goal, max_cells(problem), meter)
-        if np.array_equal(front.points, whole):
-            longest = max(map(len, front.paths))
-    points = front.points[:, np.argsort(order)] + costs.field[:, start]
-    lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
-    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.rounded, costs.rounded, longest)]
-    finer = [_cells_of_cheap(points[:, k], costs.field[k], usable) for k in np.flatnonzero(costs.rounded)]
+    front = Front(front.paths, front.points[:, np.argsort(order)] + costs.field[:, start])
+    longest, most = _longest(problem, front, costs), max_cells(problem)
+    if any(len(path) > most for path in front.paths):
+        whole, paths = front.points, _short_paths(front.paths, moves, costs.take(order), start, goal, most, meter)
+        front = Front(
+            paths, np.array([_costs_of(path, moves, costs) for path in paths], dtype=np.int64).reshape(-1, problem.n_obj)
+        )
+        # Other paths may have the same costs.
+        longest = most if np.array_equal(front.points, whole) else longest
+    parts = [_Part(front.paths, costs.values(front.points), _off(front.paths, costs), costs.rounded, longest)]
+    finer = [_cells_of_cheap(front.points[:, k], costs.field[k], usable) for k in np.flatnonzero(costs.rounded)]
     del costs, front
     for within in finer:
         if within is not None and not meter.message and within.tobytes() not in searched:
@@ -195,45 +191,53 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: s
     return parts
 
 
-def _front_of_short_paths(front: Front, moves: Moves, costs: Costs, start: int, goal: int, most: int, meter: Meter) -> Front:
-    """Return the front of the paths that visit at most ``most`` cells, for one or two objectives and that of all paths.
+def _off(paths: list[np.ndarray], costs: Costs) -> np.ndarray:
+    """Return by how much the objectives of paths may be off, where costs had to be rounded, shape (N, k)."""
+    return np.array([len(path) for path in paths]).reshape(-1, 1) * costs.unit * costs.rounded
 
-    The number of steps is searched as one more objective.
-    """
-    moves = moves.within(steps_through(moves, start, goal) < most)
-    fronts = [front]
-    # Each objective alone is quick, so that there is something to keep if a budget ends the search for both.
+
+def _longest(problem, front: Front, costs: Costs) -> int:
+    """Return the most cells of a path of a front, without those that exceed a potential limit; 0 if there is none."""
+    lengths = np.array([len(path) for path in front.paths], dtype=np.int64)
+    if problem.obstacles == "limit":
+        k = problem.objective_names.index("vulnerability")
+        least = costs.values(front.points)[:, k] - _off(front.paths, costs)[:, k]
+        lengths = lengths[problem.over_limit(least) <= 0]
+    return int(lengths.max(initial=0))
+
+
+def _short_paths(
+    paths: list[np.ndarray], moves: Moves, costs: Costs, start: int, goal: int, most: int, meter: Meter
+) -> list[np.ndarray]:
+    """Return the front of the paths that visit at most ``most`` cells, or what a budget allows, given that of all paths."""
+    found = [path for path in paths if len(path) <= most]
+    # Each objective alone is quick, so that there is something to keep if a budget ends the search for all.
     for k in range(len(costs.step)):
-        found = front_of_two(moves, _with_steps(costs.take([k])), start, goal, meter)
-        fronts.append(
-            Front(found.paths, np.array([_costs_of(path, moves, costs) for path in found.paths]).reshape(-1, len(costs.step)))
-        )
-    if len(costs.step) == 2 and not meter.message:
-        found = front_of_three(moves, _with_steps(costs), start, goal, meter)
-        fronts.append(Front(found.paths, np.delete(found.points, 1, axis=1)))
-    paths = [path for one in fronts for path in one.paths]
-    points = np.concatenate([one.points[:, [0, -1]] for one in fronts])
-    short = np.flatnonzero([len(path) <= most for path in paths])
-    return merged([Front([paths[i] for i in short], points[short])])
+        if not meter.message:
+            found += front_of_three(moves, _three(costs.take([k])), start, goal, meter, most_steps=most - 1).paths
+    if meter.message:
+        return found
+    whole = front_of_three(moves, _three(costs), start, goal, meter, most_steps=most - 1).paths
+    return found + whole if meter.message else whole
 
 
-def _with_steps(costs: Costs) -> Costs:
-    """Return costs with the number of steps among them, before the last one, which alone may depend on headings."""
-    k = len(costs.step) - 1
+def _three(costs: Costs) -> Costs:
+    """Return one to three costs as three, with some that are nothing before the last, which alone may depend on headings."""
+    place = [len(costs.step) - 1] * (3 - len(costs.step))
     return costs._replace(
-        step=np.insert(costs.step, k, 1, axis=0),
-        field=np.insert(costs.field, k, 0, axis=0),
-        unit=np.insert(costs.unit, k, 1.0),
-        rounded=np.insert(costs.rounded, k, False),
+        step=np.insert(costs.step, place, 0, axis=0),
+        field=np.insert(costs.field, place, 0, axis=0),
+        unit=np.insert(costs.unit, place, 1.0),
+        rounded=np.insert(costs.rounded, place, False),
     )
 
 
 def _costs_of(path: np.ndarray, moves: Moves, costs: Costs) -> np.ndarray:
-    """Return the costs of a path, int64, shape (k,), without that of the start cell."""
+    """Return the costs of a path, int64, shape (k,)."""
     dx, dy = np.diff(moves.cells(path), axis=0).T
     heading = HEADING_OF[dy + 1, dx + 1]
     before = np.concatenate([[8], heading[:-1]])
-    return costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
+    return costs.step[:, before, heading].sum(axis=1) + costs.field[:, path].sum(axis=1)
 
 
 def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) -> np.ndarray | None:
@@ -246,24 +250,16 @@ def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) ->
     return usable & (field <= dearest[cheap].max()) if cheap.any() else None
 
 
-def _scored(problem, parts: list[_Part], early: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _scored(problem, parts: list[_Part], early: bool) -> tuple[np.ndarray, np.ndarray]:
     """Return genes and objectives of paths in ascending order, without those that exceed a potential limit.
 
-    Paths too long for the representation are left out; the numbers of their cells come third. What was found ``early``, before
-    the search was over, may have detours, which a monotone representation codes as the better direct way.
+    What was found ``early``, before the search was over, may have detours, which a monotone representation codes as the better
+    direct way.
     """
     paths = [path for part in parts for path in part.paths]
     offsets = np.cumsum([0, *(len(path) for path in paths)])
-    cells = np.concatenate(paths) if paths else np.empty(0, dtype=np.int64)
+    sequences = Sequences(np.concatenate(paths) if paths else np.empty(0, dtype=np.int64), offsets)
     expected, off = (np.concatenate([getattr(part, name) for part in parts]) for name in ("F", "off"))
-    sequences, too_long = Sequences(cells, offsets), np.empty(0, dtype=np.int64)
-    fits = problem.representation.fits(sequences)
-    if not fits.all():
-        fits |= problem.representation.fits(cut_loops(sequences, problem.representation.moves.n_cells))
-        k = problem.objective_names.index("vulnerability") if problem.obstacles == "limit" else None
-        wanted = ~fits if k is None else ~fits & (problem.over_limit(expected[:, k] - off[:, k]) <= 0)
-        too_long, sequences = sequences.lengths[wanted], sequences.take(fits)
-        expected, off = expected[fits], off[fits]
     X = problem.representation.from_sequences(sequences)
     F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
     rounding = _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
@@ -288,7 +284,7 @@ def _scored(problem, parts: list[_Part], early: bool) -> tuple[np.ndarray, np.nd
     if problem.obstacles == "limit":
         k = problem.objective_names.index("vulnerability")
         keep = keep[problem.over_limit(F[keep, k]) <= 0]
-    return X[keep], F[keep], too_long
+    return X[keep], F[keep]
 
 
 def _ranks(values: np.ndarray) -> np.ndarray:

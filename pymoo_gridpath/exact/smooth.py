@@ -31,14 +31,20 @@ _BYTES_OF_STEPS = 8 * 4 + 8 + 8 + 4 + 4
 _SHARE_AT_A_TIME, _LEAST_AT_A_TIME = 1 / 16, 2**9
 
 
-def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.ndarray, meter: Meter) -> list[np.ndarray] | None:
-    """Return the cells of the best path to each of some labels, or None if there is too little memory for it.
+def traced_paths(closed: np.ndarray, ends: np.ndarray) -> list[np.ndarray]:
+    """Return the cells of the path by which each of some labels was found."""
+    return [_traced(closed, end) for end in ends]
+
+
+def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.ndarray, meter: Meter) -> list[np.ndarray]:
+    """Return the cells of the best path to each of some labels.
+
+    Where costs depend on headings, or there is too little memory, it is that by which the label was found.
 
     Parameters
     ----------
     moves : Moves
     costs : Costs
-        Of objectives that do not depend on headings.
     closed : numpy.ndarray of int32, shape (n, 2)
         Cells and parents of the labels, those of each cell in ascending order of the first cost; the first is the start. None
         but the ends may be missing among those that could lead to an end at its costs.
@@ -46,11 +52,13 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
         Numbers of labels that are non-dominated paths.
     meter : Meter
     """
+    if costs.with_heading:
+        return traced_paths(closed, ends)
     same_steps = costs.step.min(axis=(1, 2)).any()
     of_closed = _BYTES_OF_CLOSED + 8 * len(costs.step)
     of_leading = _BYTES_OF_LEADING + (0 if same_steps else _BYTES_OF_STEPS)
     if meter.n_fixed + len(closed) * (of_closed + of_leading) >= meter.memory:
-        return None
+        return traced_paths(closed, ends)
     first, place = _grouped(closed, moves.n_cells)
     cell, spent = _spent(closed, place, moves.width, HEADING_OF, costs.step, costs.field)
     start, end = place[0], place[ends]
@@ -265,4 +273,20 @@ def _trace(cell, parents, start, turn, before, end):
             parent = parents[label, heading]
             heading = before[label, heading]
             label = parent
+    return cells
+
+
+@kernel
+def _traced(closed, number):
+    """Return the cells of the path that ends with a closed label, int64."""
+    n = 0
+    label = number
+    while label >= 0:
+        n += 1
+        label = closed[label, 1]
+    cells = np.empty(n, dtype=np.int64)
+    label = number
+    for k in range(n - 1, -1, -1):
+        cells[k] = closed[label, 0]
+        label = closed[label, 1]
     return cells

@@ -7,28 +7,30 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.exact.smooth import smoothest_paths
-from pymoo_gridpath.exact.two import CLOSED_FULL, DIRECT, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow, trace
+from pymoo_gridpath.exact.lists import covered, empty_lists, has_room, insert
+from pymoo_gridpath.exact.smooth import smoothest_paths, traced_paths
+from pymoo_gridpath.exact.two import CLOSED_FULL, DIRECT, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
 # Places in the array of counts.
-N_OPEN, N_CLOSED, N_FOUND, N_POPPED, N_NODES, FREE_NODE = range(6)
+N_OPEN, N_CLOSED, N_FOUND, N_POPPED = range(4)
 
 # Why the kernel returned, besides the reasons that the search for two objectives has.
-NODES_FULL = 5
+ROWS_FULL = 5
 
 _POPS_AT_A_TIME = 2**17
 
 
-def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
-    """Return the exact front of three objectives.
+def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, most_steps: int | None = None) -> Front:
+    """Return the exact front of three objectives, of all paths or of those that take at most ``most_steps`` steps.
 
     Of paths with the same costs it holds the one that `smoothest_paths` chooses, as long as memory lasts; any one if a cost
     depends on headings.
 
     Labels are popped in lexicographic order, so that the first objective needs no comparison: a label is dominated if and only
     if one of the pairs (g2, g3) closed so far at its state is. With headings, a pair counts for the other headings of the
-    cell too, by the turn that it takes to get there.
+    cell too, by the turn that it takes to get there. Where steps are limited they are counted as well: a label with fewer
+    steps is not dominated before the goal, since what leads on from it may take more.
 
     Parameters
     ----------
@@ -38,6 +40,7 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     start, goal : int
     meter : Meter
         Ends the search when a budget is used up; the part of the front with the least first costs is returned then.
+    most_steps : int, optional
 
     References
     ----------
@@ -45,7 +48,7 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     lazy and efficient dominance checks", IJCAI 2023 (LTMOA*). F.-J. Pulido, L. Mandow and J.-L. Perez-de-la-Cruz,
     "Dimensionality reduction in multiobjective shortest path search", Computers & Operations Research 64, 2015.
     """
-    search = _Search(moves, costs, start, goal, meter)
+    search = _Search(moves, costs, start, goal, meter, most_steps)
     meter.n_fixed = search.n_fixed
     if not meter.message:
         search.run(meter)
@@ -55,25 +58,27 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
 class _Search:
     """The arrays of one search, which grow between calls of the kernel."""
 
-    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, meter: Meter):
+    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, most_steps: int | None):
         self.moves, self.costs, self.start, self.goal = moves, costs, start, goal
         self.n_headings = 8 if costs.with_heading else 1
-        self.bounds = np.stack([self._bound(k, meter) for k in range(3)], axis=1)
+        # Where any number of steps will do, none are counted.
+        self.per_step, self.most_steps = (0, 0) if most_steps is None else (1, most_steps)
+        bounds = [self._bound(costs.step[k], costs.field[k], costs.with_heading and k == 2, meter) for k in range(3)]
+        no_field = np.zeros_like(costs.field[0])
+        left = None if most_steps is None else self._bound(np.ones_like(costs.step[0]), no_field, False, meter)
+        self.bounds = np.stack([*bounds, np.zeros_like(bounds[0]) if left is None else left], axis=1)
         # The last list is that of the paths found.
-        self.lists = np.full(len(self.bounds) + 1, -1, dtype=np.int32)
-        self.nodes = np.empty((4096, 3), dtype=np.int64)
-        self.heap = np.empty((1024, 4), dtype=np.int64)
+        self.lists, self.rows, self.taken = empty_lists(len(self.bounds) + 1)
+        self.heap = np.empty((1024, 5), dtype=np.int64)
         self.closed = np.empty((1024, 2), dtype=np.int32)
         self.found = np.empty((64, 4), dtype=np.int64)
-        self.counts = np.zeros(6, dtype=np.int64)
-        self.counts[FREE_NODE] = -1
+        self.counts = np.zeros(4, dtype=np.int64)
         self._open_first_steps()
 
-    def _bound(self, k: int, meter: Meter) -> np.ndarray:
-        """Return the least cost in one objective from every state."""
-        pair = self.costs.take((k, k))
-        with_heading = self.costs.with_heading and k == 2
-        bound = backward_costs(self.moves, pair.step, pair.field, self.goal, with_heading, stop=meter.stop)[0][0]
+    def _bound(self, step: np.ndarray, field: np.ndarray, with_heading: bool, meter: Meter) -> np.ndarray:
+        """Return the least cost of one kind from every state."""
+        pair = np.stack([step, step]), np.stack([field, field])
+        bound = backward_costs(self.moves, *pair, self.goal, with_heading, stop=meter.stop)[0][0]
         return bound if with_heading else np.repeat(bound, self.n_headings)
 
     def _open_first_steps(self) -> None:
@@ -83,15 +88,17 @@ class _Search:
             if self.moves.legal[self.start] >> m & 1:
                 cell = self.start + int(self.moves.offsets[m])
                 state = 8 * cell + m if self.costs.with_heading else cell
-                f = self.costs.step[:, 8, m] + self.costs.field[:, cell] + self.bounds[state]
-                if f.max() < UNREACHABLE:
-                    push(self.heap, self.counts[N_OPEN], f[0], f[1], 2 * f[2] + (cell == self.goal), (8 * cell + m) << 32)
+                f = self.costs.step[:, 8, m] + self.costs.field[:, cell] + self.bounds[state, :3]
+                steps = self.per_step + self.bounds[state, 3]
+                if f.max() < UNREACHABLE and steps <= self.most_steps:
+                    load = (8 * cell + m) << 32
+                    push(self.heap, self.counts[N_OPEN], f[0], f[1], 2 * f[2] + (cell == self.goal), steps, load)
                     self.counts[N_OPEN] += 1
 
     def run(self, meter: Meter) -> None:
         """Search until no label is left or a budget is used up."""
         status = PAUSED
-        full = {HEAP_FULL: self.heap, CLOSED_FULL: self.closed, FOUND_FULL: self.found, NODES_FULL: self.nodes}
+        full = {HEAP_FULL: self.heap, CLOSED_FULL: self.closed, FOUND_FULL: self.found, ROWS_FULL: self.rows}
         while status != DONE:
             meter.check(self.n_labels, sum(array.nbytes for array in full.values()))
             if meter.message:
@@ -104,10 +111,13 @@ class _Search:
                 self.costs.with_heading,
                 DIRECT,
                 self.bounds,
+                self.per_step,
+                self.most_steps,
                 self.start,
                 self.goal,
                 self.lists,
-                self.nodes,
+                self.rows,
+                self.taken,
                 self.heap,
                 self.closed,
                 self.found,
@@ -134,118 +144,75 @@ class _Search:
 
     def paths(self) -> list[np.ndarray]:
         """Return the cells of the paths found."""
-        return [trace(self.closed, int(number)) for number in self.found[: self.counts[N_FOUND], 0]]
+        return traced_paths(self.closed, self.found[: self.counts[N_FOUND], 0])
 
     def smoothest_paths(self, meter: Meter) -> list[np.ndarray]:
         """Return the cells of the paths found, or of better ones with the same costs."""
-        if self.costs.with_heading:
-            return self.paths()
         # What the search alone needed has served.
-        self.heap = self.nodes = self.heap[:0].copy()
+        self.heap = self.rows = self.heap[:0].copy()
         closed, ends = self.closed[: self.counts[N_CLOSED]], self.found[: self.counts[N_FOUND], 0]
-        paths = smoothest_paths(self.moves, self.costs, closed, ends, meter)
-        return self.paths() if paths is None else paths
+        return smoothest_paths(self.moves, self.costs, closed, ends, meter)
 
 
 @kernel
-def before(a, i, first, second, third):
-    """Whether entry i of a heap comes before three keys."""
+def before(a, i, first, second, third, fourth):
+    """Whether entry i of a heap comes before four keys."""
     if a[i, 0] != first:
         return a[i, 0] < first
     if a[i, 1] != second:
         return a[i, 1] < second
-    return a[i, 2] < third
+    if a[i, 2] != third:
+        return a[i, 2] < third
+    return a[i, 3] < fourth
 
 
 @kernel
 def move(heap, source, target):
     """Copy an entry of a heap."""
-    for k in range(4):
+    for k in range(5):
         heap[target, k] = heap[source, k]
 
 
 @kernel
-def push(heap, n, first, second, third, load):
-    """Add an entry to the ``n`` that a heap of three keys holds."""
-    i = n
-    while i > 0:
-        up = (i - 1) >> 1
-        if before(heap, up, first, second, third):
-            break
-        move(heap, up, i)
-        i = up
+def fill(heap, i, first, second, third, fourth, load):
+    """Write an entry of a heap."""
     heap[i, 0] = first
     heap[i, 1] = second
     heap[i, 2] = third
-    heap[i, 3] = load
+    heap[i, 3] = fourth
+    heap[i, 4] = load
+
+
+@kernel
+def push(heap, n, first, second, third, fourth, load):
+    """Add an entry to the ``n`` that a heap of four keys holds."""
+    i = n
+    while i > 0:
+        up = (i - 1) >> 1
+        if before(heap, up, first, second, third, fourth):
+            break
+        move(heap, up, i)
+        i = up
+    fill(heap, i, first, second, third, fourth, load)
 
 
 @kernel
 def drop_first(heap, n):
-    """Remove the least entry, ``heap[0]``, of the ``n`` that a heap of three keys holds."""
+    """Remove the least entry, ``heap[0]``, of the ``n`` that a heap of four keys holds."""
     last = n - 1
-    first, second, third, load = heap[last, 0], heap[last, 1], heap[last, 2], heap[last, 3]
+    first, second, third, fourth, load = heap[last, 0], heap[last, 1], heap[last, 2], heap[last, 3], heap[last, 4]
     i = 0
     while True:
         down = 2 * i + 1
         if down >= last:
             break
-        if down + 1 < last and before(heap, down + 1, heap[down, 0], heap[down, 1], heap[down, 2]):
+        if down + 1 < last and before(heap, down + 1, heap[down, 0], heap[down, 1], heap[down, 2], heap[down, 3]):
             down += 1
-        if not before(heap, down, first, second, third):
+        if not before(heap, down, first, second, third, fourth):
             break
         move(heap, down, i)
         i = down
-    heap[i, 0] = first
-    heap[i, 1] = second
-    heap[i, 2] = third
-    heap[i, 3] = load
-
-
-@kernel
-def covered(lists, nodes, number, second, third):
-    """Whether a pair is dominated by, or equal to, one of a list.
-
-    A list is in ascending order of the third objective, and so in descending order of the second.
-    """
-    k = lists[number]
-    while k >= 0 and nodes[k, 1] <= third:
-        if nodes[k, 0] <= second:
-            return True
-        k = nodes[k, 2]
-    return False
-
-
-@kernel
-def insert(lists, nodes, counts, number, second, third):
-    """Add a pair to a list and drop those that it dominates; nothing if the list covers it already."""
-    behind = -1
-    k = lists[number]
-    while k >= 0 and nodes[k, 1] <= third:
-        if nodes[k, 0] <= second:
-            return
-        if nodes[k, 1] == third:
-            break
-        behind = k
-        k = nodes[k, 2]
-    while k >= 0 and nodes[k, 0] >= second:
-        after = nodes[k, 2]
-        nodes[k, 2] = counts[FREE_NODE]
-        counts[FREE_NODE] = k
-        k = after
-    new = counts[FREE_NODE]
-    if new >= 0:
-        counts[FREE_NODE] = nodes[new, 2]
-    else:
-        new = counts[N_NODES]
-        counts[N_NODES] += 1
-    nodes[new, 0] = second
-    nodes[new, 1] = third
-    nodes[new, 2] = k
-    if behind >= 0:
-        nodes[behind, 2] = new
-    else:
-        lists[number] = new
+    fill(heap, i, first, second, third, fourth, load)
 
 
 @kernel
@@ -257,10 +224,13 @@ def search_three(
     with_heading,
     direct,
     bounds,
+    per_step,
+    most_steps,
     start,
     goal,
     lists,
-    nodes,
+    rows,
+    taken,
     heap,
     closed,
     found,
@@ -277,21 +247,21 @@ def search_three(
         See `Costs`.
     direct : int64, shape (8, 8)
         See `DIRECT`.
-    bounds : int64, shape (n_states, 3)
-        Lower bounds of the rest.
+    bounds : int64, shape (n_states, 4)
+        Lower bounds of the rest: three objectives, and steps.
+    per_step, most_steps : int
+        1 and how many steps a path may take, or 0 and 0 if they are not counted.
     start, goal : int
-    lists : int32, shape (n_states + 1,)
-        First node of the list of pairs (g2, g3) closed at each state, and, last, of (f2, f3) of the paths found; -1: empty.
-    nodes : int64, shape (n, 3)
-        Pairs and the number of the next node.
-    heap : int64, shape (n, 4)
-        Open labels: f1, f2, ``2 * f3`` (plus 1 at the goal, which so comes after all that is equal, see `smoothest_paths`) and
-        ``(8 * cell + heading) << 32 | parent``.
+    lists, rows, taken
+        Of (g2, g3, steps) closed at each state and, the last list, of (f2, f3, 0) of the paths found; see `empty_lists`.
+    heap : int64, shape (n, 5)
+        Open labels: f1, f2, ``2 * f3`` (plus 1 at the goal, which so comes after all that is equal, see `smoothest_paths`), the
+        least steps of the whole path, and ``(8 * cell + heading) << 32 | parent``.
     closed : int32, shape (n, 2)
         Closed labels: cell and number of the parent.
     found : int64, shape (n, 4)
         Numbers of the closed labels that are non-dominated paths, and their costs.
-    counts : int64, shape (6,)
+    counts : int64, shape (4,)
         State of the search, changed in place like all arrays from ``lists`` on.
     max_pops : int
     """
@@ -309,14 +279,15 @@ def search_three(
         if counts[N_FOUND] >= len(found):
             status = FOUND_FULL
             break
-        if counts[N_NODES] + 9 > len(nodes):
-            status = NODES_FULL
+        if not has_room(rows, taken, 9):
+            status = ROWS_FULL
             break
         if pops >= max_pops:
             status = PAUSED
             break
         pops += 1
-        f1, f2, f3, load = heap[0, 0], heap[0, 1], heap[0, 2] >> 1, heap[0, 3]
+        f1, f2, f3, load = heap[0, 0], heap[0, 1], heap[0, 2] >> 1, heap[0, 4]
+        all_steps = heap[0, 3]
         drop_first(heap, n)
         n -= 1
         heading = (load >> 32) & 7
@@ -324,12 +295,13 @@ def search_three(
         state = load >> 32 if with_heading else cell
         g2 = f2 - bounds[state, 1]
         g3 = f3 - bounds[state, 2]
-        if covered(lists, nodes, state, g2, g3) or covered(lists, nodes, ends, f2, f3):
+        steps = all_steps - bounds[state, 3]
+        if covered(lists, rows, state, g2, g3, steps) or covered(lists, rows, ends, f2, f3, 0):
             continue
         closed[n_closed, 0] = cell
         closed[n_closed, 1] = load & 0xFFFFFFFF
         if cell == goal:
-            insert(lists, nodes, counts, ends, f2, f3)
+            insert(lists, rows, taken, ends, f2, f3, 0)
             found[counts[N_FOUND], 0] = n_closed
             found[counts[N_FOUND], 1] = f1
             found[counts[N_FOUND], 2] = f2
@@ -340,9 +312,9 @@ def search_three(
         if with_heading:
             # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
             for h in range(8):
-                insert(lists, nodes, counts, 8 * cell + h, g2, g3 + step[2, heading, h])
+                insert(lists, rows, taken, 8 * cell + h, g2, g3 + step[2, heading, h], steps)
         else:
-            insert(lists, nodes, counts, cell, g2, g3)
+            insert(lists, rows, taken, cell, g2, g3, steps)
         g1 = f1 - bounds[state, 0]
         from_before = legal[cell - offsets[heading]]
         last = heading if with_heading else 8
@@ -356,18 +328,21 @@ def search_three(
             if next_cell == start:
                 continue
             next_state = 8 * next_cell + m if with_heading else next_cell
-            next1 = g1 + step[0, last, m] + field[0, next_cell] + bounds[next_state, 0]
-            if next1 >= 2**61:
+            next_f1 = g1 + step[0, last, m] + field[0, next_cell] + bounds[next_state, 0]
+            next_steps = steps + per_step
+            next_all = next_steps + bounds[next_state, 3]
+            if next_f1 >= 2**61 or next_all > most_steps:
                 continue
             next2 = g2 + step[1, last, m] + field[1, next_cell]
             next3 = g3 + step[2, last, m] + field[2, next_cell]
-            if covered(lists, nodes, next_state, next2, next3):
+            if covered(lists, rows, next_state, next2, next3, next_steps):
                 continue
             next_f2 = next2 + bounds[next_state, 1]
             next_f3 = next3 + bounds[next_state, 2]
-            if covered(lists, nodes, ends, next_f2, next_f3):
+            if covered(lists, rows, ends, next_f2, next_f3, 0):
                 continue
-            push(heap, n, next1, next_f2, 2 * next_f3 + (next_cell == goal), (8 * next_cell + m) << 32 | n_closed)
+            load = (8 * next_cell + m) << 32 | n_closed
+            push(heap, n, next_f1, next_f2, 2 * next_f3 + (next_cell == goal), next_all, load)
             n += 1
         n_closed += 1
     counts[N_OPEN], counts[N_CLOSED] = n, n_closed

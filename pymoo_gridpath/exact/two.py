@@ -19,7 +19,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.exact.smooth import smoothest_paths
+from pymoo_gridpath.exact.smooth import smoothest_paths, traced_paths
 from pymoo_gridpath.exact.supported import Hull, supported_points
 from pymoo_gridpath.search import HEADINGS, UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
@@ -215,17 +215,14 @@ class _Search:
 
     def paths(self) -> list[np.ndarray]:
         """Return the cells of the paths found."""
-        return [trace(self.closed, int(number)) for number in self.found[: self.counts[N_FOUND], 0]]
+        return traced_paths(self.closed, self.found[: self.counts[N_FOUND], 0])
 
     def smoothest_paths(self, meter: Meter) -> list[np.ndarray]:
         """Return the cells of the paths found, or of better ones with the same costs."""
         # The labels that are still open have served.
         self.heap = np.empty((0, 3), dtype=np.int64)
-        if self.costs.with_heading:
-            return self.paths()
         closed, ends = self.closed[: self.counts[N_CLOSED]], self.found[: self.counts[N_FOUND], 0]
-        paths = smoothest_paths(self.moves, self.costs, closed, ends, meter)
-        return self.paths() if paths is None else paths
+        return smoothest_paths(self.moves, self.costs, closed, ends, meter)
 
 
 def grow(array: np.ndarray) -> None:
@@ -449,19 +446,3 @@ def search_two(
     counts[N_OPEN], counts[N_CLOSED] = n, n_closed
     counts[N_POPPED] += pops
     return status
-
-
-@kernel
-def trace(closed, number):
-    """Return the cells of the path that ends with a closed label, int64."""
-    n = 0
-    label = number
-    while label >= 0:
-        n += 1
-        label = closed[label, 1]
-    cells = np.empty(n, dtype=np.int64)
-    label = number
-    for k in range(n - 1, -1, -1):
-        cells[k] = closed[label, 0]
-        label = closed[label, 1]
-    return cells

@@ -82,9 +82,8 @@ class GridPathProblem(Problem):
     ``pareto_front()`` and ``pareto_set()`` return the exact front of the legal paths, without penalties, and a path for each
     point (see `exact_front`; the first call computes both). They return None if an objective does not add up along a path,
     that is, if it is neither length nor turn and has no field; if there are more than three objectives; or, with a warning,
-    if ``max_seconds`` (60 by default) do not suffice or, of three objectives, the representation cannot code a path of the
-    front. pymoo asks for the front of its own accord where it prints progress (``verbose=True``), to show how far a run is
-    from it.
+    if ``max_seconds`` (60 by default) do not suffice. pymoo asks for the front of its own accord where it prints progress
+    (``verbose=True``), to show how far a run is from it.
 
     Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
     ``interfering_cells`` of each individual: ``pop.get("turn")``. It draws no random number.

@@ -30,20 +30,21 @@ def test_a_monotone_path_with_a_detour_counts_as_the_direct_way(max_labels):
     assert not worse.any()
 
 
-def test_a_budget_keeps_paths_that_fit_into_rows_that_are_too_short():
-    grid, random_state = OccupancyGrid(np.zeros((64, 64))), np.random.default_rng(0)
-    costs = [Cost(name, random_state.integers(0, 4, (64, 64))) for name in ("a", "b")]
-    coding = CellSequence(grid, (0, 0), (63, 63), max_cells=70)
-    problem = GridPathProblem(grid, (0, 0), (63, 63), coding, costs)
+@pytest.mark.parametrize(("n_obj", "side", "max_cells"), [(2, 64, 95), (3, 24, 32)])
+def test_a_budget_keeps_paths_that_fit_into_rows_that_are_too_short(n_obj, side, max_cells):
+    grid, random_state = OccupancyGrid(np.zeros((side, side))), np.random.default_rng(0)
+    costs = [Cost(name, random_state.integers(0, 4, (side, side))) for name in "abc"[:n_obj]]
+    coding = CellSequence(grid, (0, 0), (side - 1, side - 1), max_cells=max_cells)
+    roomy, problem = (GridPathProblem(grid, (0, 0), (side - 1, side - 1), rows, costs) for rows in ("cells", coding))
     whole = exact_front(problem)
-    assert whole.complete and whole.message.startswith(f"all {len(whole.F)} points found of paths that visit at most 70 cells")
-    # Enough for the front of all paths.
-    roomy = exact_front(GridPathProblem(grid, (0, 0), (63, 63), "cells", costs))
-    found = exact_front(problem, Budget(max_labels=roomy.n_labels + 100))
-    assert not found.complete and "paths found that visit at most 70 cells, the max_cells" in found.message
+    assert whole.complete and f"points found of paths with at most {max_cells} cells, the max_cells" in whole.message
+    # Enough for the front of all paths, but not for the other.
+    max_labels = exact_front(roomy).n_labels + 100
+    assert max_labels < whole.n_labels
+    found = exact_front(problem, Budget(max_labels=max_labels))
+    assert not found.complete and f"paths found with at most {max_cells} cells, the max_cells" in found.message
     np.testing.assert_array_equal(problem.evaluate(found.X), found.F)
-    for k in range(2):
-        assert found.F[:, k].min() == whole.F[:, k].min()
+    np.testing.assert_array_equal(found.F.min(axis=0), whole.F.min(axis=0))
 
 
 def test_a_front_that_took_too_long_is_looked_for_again():

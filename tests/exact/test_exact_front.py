@@ -120,33 +120,38 @@ def test_more_than_three_objectives_are_refused():
         exact_front(problem)
 
 
-def test_fronts_for_which_a_row_is_too_short():
-    """Of two objectives the front is that of the paths that fit; of three, points whose paths do not fit are left out."""
+@pytest.mark.parametrize("objectives", [("length", "vulnerability"), ("length", "vulnerability", "turn")])
+def test_the_front_of_rows_that_are_too_short_is_that_of_the_paths_that_fit(objectives):
     grid = OccupancyGrid(np.pad(np.ones((3, 3)), ((3, 3), (3, 3))))
     coding = CellSequence(grid, (0, 4), (8, 4), max_cells=9)
-    for objectives in (("length", "vulnerability"), ("length", "vulnerability", "turn")):
-        roomy, problem = (GridPathProblem(grid, (0, 4), (8, 4), rows, objectives) for rows in ("cells", coding))
-        whole, found = exact_front(roomy), exact_front(problem)
-        cells = roomy.representation.to_sequences(whole.X).lengths
-        fits = cells <= 9
-        assert whole.complete and 0 < fits.sum() < len(fits)
-        assert found.complete == (len(objectives) == 2)
-        if found.complete:
-            assert found.message == (
-                f"all {len(found.F)} points found of paths that visit at most 9 cells, the max_cells of the representation; "
-                f"without that limit the front has paths of up to {cells.max()}"
-            )
-            # A point that only longer paths dominate comes in besides.
-            assert len(found.F) == fits.sum() + 1 and {*map(tuple, whole.F[fits])} < {*map(tuple, found.F)}
-            np.testing.assert_array_equal(problem.pareto_front(), found.F)
-            continue
-        np.testing.assert_array_equal(found.F, whole.F[fits])
-        assert f"left out {(~fits).sum()} points" in found.message and "expected at most 9, the max_cells" in found.message
-        with pytest.warns(UserWarning, match="left out"):
-            assert problem.pareto_front() is None
-        # What breaks the limit is no part of the front, whether it fits or not.
-        options = {"obstacles": "limit", "potential_limit": whole.F[:, 1].min() / 2}
-        assert exact_front(GridPathProblem(grid, (0, 4), (8, 4), coding, objectives, **options)).complete
+    roomy, problem = (GridPathProblem(grid, (0, 4), (8, 4), rows, objectives) for rows in ("cells", coding))
+    whole, found = exact_front(roomy), exact_front(problem)
+    cells = roomy.representation.to_sequences(whole.X).lengths
+    fits = cells <= 9
+    assert whole.complete and 0 < fits.sum() < len(fits)
+    assert found.complete and found.message == (
+        f"all {len(found.F)} points found of paths with at most 9 cells, the max_cells of the representation; "
+        f"without that limit the front has paths of up to {cells.max()}"
+    )
+    # Points that only longer paths dominate may come in besides.
+    assert {*map(tuple, whole.F[fits])} <= {*map(tuple, found.F)}
+    np.testing.assert_array_equal(problem.pareto_front(), found.F)
+    np.testing.assert_array_equal(problem.evaluate(found.X), found.F)
+    # Where only longer paths keep the potential limit, that is said; where none do, rows are long enough.
+    safe = {"obstacles": "limit", "potential_limit": whole.F[:, 1].min()}
+    found = exact_front(GridPathProblem(grid, (0, 4), (8, 4), coding, objectives, **safe))
+    assert (
+        found.complete
+        and len(found.F) == 0
+        and found.message
+        == (
+            f"no legal path with at most 9 cells, the max_cells of the representation, keeps the potential limit of "
+            f"{safe['potential_limit']:g}; paths of up to {cells.max()} cells do"
+        )
+    )
+    safe["potential_limit"] *= 0.9
+    found = exact_front(GridPathProblem(grid, (0, 4), (8, 4), coding, objectives, **safe))
+    assert found.complete and found.message == f"no legal path keeps the potential limit of {safe['potential_limit']:g}"
 
 
 @pytest.mark.parametrize("objectives", [("length", "turn"), ("turn", "vulnerability"), ("length", "vulnerability", "turn")])
