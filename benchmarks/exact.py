@@ -25,6 +25,7 @@ from pymoo_gridpath.compiled import COMPILED
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.exact import ExactResult, exact_front
 from pymoo_gridpath.maps import load_map, read_scen
+from pymoo_gridpath.representations import CellSequence
 
 TWO, THREE = ("length", "vulnerability"), ("length", "vulnerability", "turn")
 
@@ -72,7 +73,12 @@ def cases(arguments) -> Iterator[Case]:
                 GridPathProblem(p.grid.replace(corner_cutting=True), p.start, p.goal, representation="cells") for p in problems
             ]
         yield Case(f"random 128, 20 %, corners {'cut' if corner else 'kept'}", problems, 0.1)
-    yield Case("random 64, 20 %, 3 objectives", random_problems(64, 0.2, n, representation="cells", objectives=THREE), 0.5)
+    problems = random_problems(64, 0.2, n, representation="cells", objectives=THREE)
+    yield Case("random 64, 20 %, 3 objectives", problems, 0.5)
+    # Too short for part of the front.
+    rows = [CellSequence(p.grid, p.start, p.goal, max_cells=98) for p in problems]
+    problems = [GridPathProblem(row.grid, row.start, row.goal, row, THREE) for row in rows]
+    yield Case("the same, at most 98 cells a path", problems, None)
     if arguments.maps is None:
         print("the rows of MovingAI maps are left out, expected their folder as --maps")
         return

@@ -249,11 +249,15 @@ from pymoo_gridpath import GridPathProblem
 from pymoo_gridpath.compiled import COMPILED
 from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.problems import random_dense_grid
+from pymoo_gridpath.representations import CellSequence
 print(COMPILED)
 for seed, objectives, coding in ((1, ["length", "vulnerability"], "cells"), (2, ["length", "vulnerability", "turn"], "integer"),
-                                 (3, ["turn", "vulnerability"], "cells")):
+                                 (3, ["turn", "vulnerability"], "cells"), (4, ["length", "vulnerability", "turn"], 16)):
     grid = random_dense_grid(14, 0.3, seed)
+    if isinstance(coding, int):
+        coding = CellSequence(grid, (0, 0), (13, 13), max_cells=coding)
     found = exact_front(GridPathProblem(grid, (0, 0), (13, 13), objectives=objectives, representation=coding))
+    assert ("with at most" in found.message) == (seed == 4)
     print(len(found.F), hashlib.sha256(found.X.tobytes() + found.F.tobytes()).hexdigest(), found.n_labels)
 """
 
@@ -282,7 +286,7 @@ def test_kernels_give_the_same_bits_compiled_and_plain(without):
         assert plain[0] == "False"
     else:
         plain = run("", NUMBA_DISABLE_JIT="1")
-    assert len(compiled) == 4
+    assert len(compiled) == 5
     assert plain[1:] == compiled[1:]
 
 
