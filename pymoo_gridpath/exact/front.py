@@ -14,6 +14,7 @@ from pymoo_gridpath.exact.costs import Costs, integer_costs
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import Front, front_of_two
 from pymoo_gridpath.objectives import Length, Turn
+from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search import HEADING_OF, Moves
 from pymoo_gridpath.search.sequences import Sequences
@@ -106,10 +107,21 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     if moves.n_cells >= _MOST_CELLS:
         raise CapabilityError(f"the grid has {moves.n_cells:,} cells, expected fewer than {_MOST_CELLS:,} for an exact front")
     meter = Meter(budget or Budget())
-    parts = _search(problem, moves, ~problem.grid.occupied.ravel(), meter, set())
-    seconds = meter.elapsed
-    X, F = _scored(problem, parts, early=bool(meter.message))
-    longest, most = max(part.longest for part in parts), max_cells(problem)
+    usable, most = ~problem.grid.occupied.ravel(), max_cells(problem)
+    parts = _search(problem, moves, usable, meter, set())
+    paths, F = _merged(problem, parts, early=bool(meter.message))
+    longest = max(map(len, paths), default=0)
+    if longest > most:
+        whole = F
+        # What does not fit into a row may hide what does.
+        within = [part.up_to(most) for part in parts]
+        if not meter.message:
+            parts = _search(problem, moves, usable, meter, set(), most)
+            within = within + parts if meter.message else parts
+        paths, F = _merged(problem, within, early=bool(meter.message))
+        # Other paths may have the same costs.
+        if whole.shape == F.shape and np.allclose(whole, F, rtol=_EQUAL, atol=0.0):
+            longest = max(map(len, paths))
     short = f" with at most {most} cells, the max_cells of the representation" if longest > most else ""
     if meter.message:
         message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}"
@@ -125,7 +137,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         )
     else:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
-    return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds)
+    X = problem.representation.from_sequences(_sequences(paths))
+    return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
 
 
 def _place(objective) -> int:
@@ -146,19 +159,23 @@ class _Part(NamedTuple):
         By how much that may be off, where costs had to be rounded.
     rounded : numpy.ndarray of bool, shape (n_obj,)
         Whether they had to be.
-    longest : int
-        Cells of the longest path of the front of all paths; more than the representation can code if some point is not here.
     """
 
     paths: list[np.ndarray]
     F: np.ndarray
     off: np.ndarray
     rounded: np.ndarray
-    longest: int
+
+    def up_to(self, most: int) -> _Part:
+        """Return what was found of paths that visit at most so many cells."""
+        keep = [k for k, path in enumerate(self.paths) if len(path) <= most]
+        return _Part([self.paths[k] for k in keep], self.F[keep], self.off[keep], self.rounded)
 
 
-def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: set[bytes]) -> list[_Part]:
-    """Return paths over usable cells, bool, shape (n_cells,), among which is the front of all of them.
+def _search(
+    problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: set[bytes], most: int | None = None
+) -> list[_Part]:
+    """Return paths over usable cells, bool, shape (n_cells,), among which is the front of those that visit at most ``most``.
 
     Where costs have to be rounded, the cheapest paths may lose most of theirs. These visit no cell that costs more than they
     do: a search among the cells that are left has a finer unit, and so on. Sets of cells that were searched are not again.
@@ -167,58 +184,35 @@ def _search(problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: s
     start, goal = moves.index(problem.start), moves.index(problem.goal)
     # Searches are quickest with the length first, and turns have to come last.
     order = sorted(range(problem.n_obj), key=lambda k: _place(problem.objectives[k]))
-    if problem.n_obj == 3:
+    if most is not None:
+        front = _front_of_short_paths(moves, costs.take(order), start, goal, most - 1, meter)
+    elif problem.n_obj == 3:
         front = front_of_three(moves, costs.take(order), start, goal, meter)
     else:
         # A single objective is searched as two equal ones.
         front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
-    front = Front(front.paths, front.points[:, np.argsort(order)] + costs.field[:, start])
-    longest, most = _longest(problem, front, costs), max_cells(problem)
-    if any(len(path) > most for path in front.paths):
-        whole, paths = front.points, _short_paths(front.paths, moves, costs.take(order), start, goal, most, meter)
-        front = Front(
-            paths, np.array([_costs_of(path, moves, costs) for path in paths], dtype=np.int64).reshape(-1, problem.n_obj)
-        )
-        # Other paths may have the same costs.
-        longest = most if np.array_equal(front.points, whole) else longest
-    parts = [_Part(front.paths, costs.values(front.points), _off(front.paths, costs), costs.rounded, longest)]
-    finer = [_cells_of_cheap(front.points[:, k], costs.field[k], usable) for k in np.flatnonzero(costs.rounded)]
+    points = front.points[:, np.argsort(order)] + costs.field[:, start]
+    lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
+    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.rounded, costs.rounded)]
+    finer = [_cells_of_cheap(points[:, k], costs.field[k], usable) for k in np.flatnonzero(costs.rounded)]
     del costs, front
     for within in finer:
         if within is not None and not meter.message and within.tobytes() not in searched:
             searched.add(within.tobytes())
-            parts += _search(problem, moves.within(within), within, meter, searched)
+            parts += _search(problem, moves.within(within), within, meter, searched, most)
     return parts
 
 
-def _off(paths: list[np.ndarray], costs: Costs) -> np.ndarray:
-    """Return by how much the objectives of paths may be off, where costs had to be rounded, shape (N, k)."""
-    return np.array([len(path) for path in paths]).reshape(-1, 1) * costs.unit * costs.rounded
-
-
-def _longest(problem, front: Front, costs: Costs) -> int:
-    """Return the most cells of a path of a front, without those that exceed a potential limit; 0 if there is none."""
-    lengths = np.array([len(path) for path in front.paths], dtype=np.int64)
-    if problem.obstacles == "limit":
-        k = problem.objective_names.index("vulnerability")
-        least = costs.values(front.points)[:, k] - _off(front.paths, costs)[:, k]
-        lengths = lengths[problem.over_limit(least) <= 0]
-    return int(lengths.max(initial=0))
-
-
-def _short_paths(
-    paths: list[np.ndarray], moves: Moves, costs: Costs, start: int, goal: int, most: int, meter: Meter
-) -> list[np.ndarray]:
-    """Return the front of the paths that visit at most ``most`` cells, or what a budget allows, given that of all paths."""
-    found = [path for path in paths if len(path) <= most]
+def _front_of_short_paths(moves: Moves, costs: Costs, start: int, goal: int, most_steps: int, meter: Meter) -> Front:
+    """Return the front of the paths that take at most ``most_steps`` steps, or any such paths if a budget ends the search."""
+    n_obj = len(costs.step)
     # Each objective alone is quick, so that there is something to keep if a budget ends the search for all.
-    for k in range(len(costs.step)):
+    paths: list[np.ndarray] = []
+    for objectives in [*([k] for k in range(n_obj)), range(n_obj)]:
         if not meter.message:
-            found += front_of_three(moves, _three(costs.take([k])), start, goal, meter, most_steps=most - 1).paths
-    if meter.message:
-        return found
-    whole = front_of_three(moves, _three(costs), start, goal, meter, most_steps=most - 1).paths
-    return found + whole if meter.message else whole
+            found = front_of_three(moves, _three(costs.take(objectives)), start, goal, meter, most_steps).paths
+            paths = paths + found if len(objectives) < n_obj or meter.message else found
+    return Front(paths, np.array([_costs_of(path, moves, costs) for path in paths], dtype=np.int64).reshape(-1, n_obj))
 
 
 def _three(costs: Costs) -> Costs:
@@ -233,11 +227,11 @@ def _three(costs: Costs) -> Costs:
 
 
 def _costs_of(path: np.ndarray, moves: Moves, costs: Costs) -> np.ndarray:
-    """Return the costs of a path, int64, shape (k,)."""
+    """Return the costs of a path, int64, shape (k,), without that of the start cell."""
     dx, dy = np.diff(moves.cells(path), axis=0).T
     heading = HEADING_OF[dy + 1, dx + 1]
     before = np.concatenate([[8], heading[:-1]])
-    return costs.step[:, before, heading].sum(axis=1) + costs.field[:, path].sum(axis=1)
+    return costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
 
 
 def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) -> np.ndarray | None:
@@ -250,18 +244,18 @@ def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) ->
     return usable & (field <= dearest[cheap].max()) if cheap.any() else None
 
 
-def _scored(problem, parts: list[_Part], early: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return genes and objectives of paths in ascending order, without those that exceed a potential limit.
+def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray], np.ndarray]:
+    """Return paths and objectives of what is non-dominated and keeps a potential limit, in order of the first objective.
 
     What was found ``early``, before the search was over, may have detours, which a monotone representation codes as the better
     direct way.
     """
     paths = [path for part in parts for path in part.paths]
-    offsets = np.cumsum([0, *(len(path) for path in paths)])
-    sequences = Sequences(np.concatenate(paths) if paths else np.empty(0, dtype=np.int64), offsets)
     expected, off = (np.concatenate([getattr(part, name) for part in parts]) for name in ("F", "off"))
-    X = problem.representation.from_sequences(sequences)
-    F = problem.score(problem.decode(X)).reshape(len(X), problem.n_obj)
+    coding, longest = problem.representation, max(map(len, paths), default=0)
+    if longest > max_cells(problem):
+        coding = CellSequence(problem.grid, problem.start, problem.goal, longest)
+    F = problem.score(coding.decode(coding.from_sequences(_sequences(paths)))).reshape(-1, problem.n_obj)
     rounding = _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
     close = np.abs(F - expected) <= rounding
     if early and not close.all():
@@ -284,7 +278,11 @@ def _scored(problem, parts: list[_Part], early: bool) -> tuple[np.ndarray, np.nd
     if problem.obstacles == "limit":
         k = problem.objective_names.index("vulnerability")
         keep = keep[problem.over_limit(F[keep, k]) <= 0]
-    return X[keep], F[keep]
+    return [paths[k] for k in keep], F[keep]
+
+
+def _sequences(paths: list[np.ndarray]) -> Sequences:
+    return Sequences(np.concatenate(paths or [np.empty(0, dtype=np.int64)]), np.cumsum([0, *map(len, paths)]))
 
 
 def _ranks(values: np.ndarray) -> np.ndarray:

@@ -279,7 +279,8 @@ def search_three(
         if counts[N_FOUND] >= len(found):
             status = FOUND_FULL
             break
-        if not has_room(rows, taken, 9):
+        # Lists of the eight headings at most.
+        if not has_room(rows, taken, 8):
             status = ROWS_FULL
             break
         if pops >= max_pops:

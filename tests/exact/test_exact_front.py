@@ -154,6 +154,38 @@ def test_the_front_of_rows_that_are_too_short_is_that_of_the_paths_that_fit(obje
     assert found.complete and found.message == f"no legal path keeps the potential limit of {safe['potential_limit']:g}"
 
 
+def test_rows_are_long_enough_for_points_that_only_rounding_or_the_limit_takes_from_a_front():
+    """What a search passes over in the end does not count, however long its path."""
+    occupied = np.array([[1, 0, 0, 0, 0, 1], [1, 0, 0, 1, 0, 0], [0, 1, 1, 0, 0, 0], [0, 1, 1, 0, 0, 0], [0, 0, 1, 0, 0, 0]])
+    costs = [
+        [0, 1e6, 1e9, 1e-8, 1e-9, 0],
+        [0, 1e-8, 100, 0, 1e-6, 1],
+        [1e8, 0, 0, 1e-5, 1e-5, 1e-6],
+        [1e-3, 0, 0, 1e-7, 1e7, 100],
+        [1e8, 1e-9, 0, 1e-9, 10, 0.01],
+    ]
+    grid = OccupancyGrid(occupied, corner_cutting=True)
+    coding = CellSequence(grid, (4, 2), (0, 2), max_cells=5)
+    problems = [(1, GridPathProblem(grid, (4, 2), (0, 2), coding, ["length", Cost("a", costs)]))]
+
+    occupied, costs = np.zeros((9, 10)), np.zeros((9, 10))
+    occupied[8, 3] = 1
+    for value, cells in {
+        1: [(0, 7), (3, 9), (5, 0), (5, 7), (6, 9), (7, 4), (7, 5), (7, 6), (8, 0)],
+        3: [(1, 8), (2, 0), (2, 3), (2, 4), (3, 4), (4, 2), (4, 7), (6, 4), (8, 5)],
+    }.items():
+        costs[tuple(np.transpose(cells))] = value
+    grid = OccupancyGrid(occupied)
+    coding = CellSequence(grid, (5, 8), (4, 5), max_cells=9)
+    limit = {"obstacles": "limit", "potential_limit": 0.018408716656267643}
+    objectives = ["vulnerability", "turn", Cost("a", costs)]
+    problems.append((2, GridPathProblem(grid, (5, 8), (4, 5), coding, objectives, **limit)))
+    for n, problem in problems:
+        found = exact_front(problem)
+        assert found.message == f"all {n} point{'s' if n > 1 else ''} found"
+        np.testing.assert_array_equal(problem.evaluate(found.X, return_values_of=["F"]), found.F)
+
+
 @pytest.mark.parametrize("objectives", [("length", "turn"), ("turn", "vulnerability"), ("length", "vulnerability", "turn")])
 def test_cells_have_room_for_paths_that_turn_little(objectives):
     """A straight way around a slalom turns little, and is far longer than the shortest and the safest path."""
