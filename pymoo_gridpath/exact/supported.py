@@ -26,7 +26,8 @@ class Hull(NamedTuple):
     bounds : numpy.ndarray of int64, shape (2, n_states)
         Least first and least second cost from each state to the goal.
     points : numpy.ndarray of int64, shape (n, 2)
-        Costs of paths, non-dominated, in ascending order of the first; the first and the last are the ends of the front.
+        Costs of paths, none dominated by another, in ascending order of the first; the first and the last are the ends of the
+        front. Those between may lie off it, since weighted sums are rounded step by step.
     paths : list of numpy.ndarray
         The cells of a path for each point.
     weights : numpy.ndarray of float, shape (n_gaps, 2)

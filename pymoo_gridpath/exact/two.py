@@ -242,7 +242,7 @@ def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
     ceilings : numpy.ndarray of float, shape (n_gaps,)
         Least upper bound of the weighted sum over the corners of each gap; the kernel lowers it, and the next.
     marks : numpy.ndarray of int64, shape (n_gaps, 2)
-        Least upper bounds of f1 and of f2 over the corners of each gap.
+        Least upper bounds of f1 over the corners of each gap, and of f2 over those of this gap and the ones behind.
     """
     n_gaps = len(hull.weights)
     beyond, above = (known[1:, 0], known[:-1, 1]) if len(known) > 1 else (known[:, 0], known[:, 1])
@@ -250,11 +250,14 @@ def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
     corners[:, 0], corners[:, 1] = beyond + 1, above + 1
     corners[:, 2] = np.minimum(np.searchsorted(hull.points[1:, 0], beyond), n_gaps - 1)
     ceilings, marks = np.full(n_gaps, -1.0), np.full((n_gaps, 2), -1)
-    for j in range(n_gaps):
+    for j in reversed(range(n_gaps)):
         mine = corners[corners[:, 2] == j, :2]
         if len(mine):
             ceilings[j] = (mine @ hull.weights[j]).max() * (1 + _ROUNDING)
             marks[j] = mine.max(axis=0)
+        elif j + 1 < n_gaps:
+            # Known points dominate an end of this gap; those behind it may still have corners.
+            marks[j, 1] = marks[j + 1, 1]
     return corners, ceilings, marks
 
 

@@ -258,7 +258,7 @@ def label_correction(grid, start, goal, headings, fields, names):
     def no_worse(a, b):
         return all(x <= y + 1e-9 for x, y in zip(measures_of(a), measures_of(b), strict=True))
 
-    first = (0, 0, 0, *(int(field[start[1], start[0]]) for field in fields.values()))
+    first = (0, 0, 0, *(round(field[start[1], start[0]]) for field in fields.values()))
     labels = {(start, None): {first}}
     queue = [(start, None, first)]
     while queue:
@@ -268,7 +268,7 @@ def label_correction(grid, start, goal, headings, fields, names):
         for m, (x, y) in legal_steps(grid, cell, headings):
             apart = 0 if heading is None else abs(m - heading)
             straight, diagonal, turn, *costs = label
-            costs = (cost + int(field[y, x]) for cost, field in zip(costs, fields.values(), strict=True))
+            costs = (cost + round(field[y, x]) for cost, field in zip(costs, fields.values(), strict=True))
             new = (straight + 1 - m % 2, diagonal + m % 2, turn + min(apart, 8 - apart), *costs)
             mine = labels.setdefault(((x, y), m), set())
             if not any(no_worse(old, new) for old in mine):
@@ -296,6 +296,40 @@ def test_the_front_equals_that_of_label_correction_on_larger_grids(seed, represe
         problem = make_problem(case, objectives)
         expected = front_of(measures, problem.objective_names)
         np.testing.assert_allclose(exact_front(problem).F, expected, rtol=1e-12, atol=1e-12)
+
+
+def test_coarse_costs_whose_weighted_sums_mislead_have_every_point():
+    """Rounded sums of tenths and turns lead to paths off the front, which must not hide the points around them."""
+    wet = Cost(
+        "wet",
+        [
+            [0.0, 0.0, 0.8, 0.9, 0.9, 0.3, 0.2],
+            [0.8, 0.0, 0.5, 0.4, 0.3, 0.9, 0.5],
+            [0.3, 0.7, 0.2, 0.7, 0.6, 0.3, 0.8],
+            [0.8, 0.0, 0.7, 0.7, 0.2, 0.1, 0.0],
+            [0.7, 0.6, 0.1, 0.2, 0.8, 0.0, 0.5],
+            [0.2, 0.9, 0.2, 0.3, 0.6, 0.8, 0.3],
+        ],
+    )
+    grid = OccupancyGrid(np.zeros((6, 7)))
+    measures = label_correction(grid, (2, 0), (0, 5), range(8), {"wet": 10 * wet.values}, ("turn", "wet"))
+    found = exact_front(GridPathProblem(grid, (2, 0), (0, 5), "cells", ("turn", wet)))
+    np.testing.assert_allclose(found.F * (1, 10), front_of(measures, ("turn", "wet")), rtol=1e-12)
+
+
+@pytest.mark.parametrize("part", range(2))
+def test_two_objectives_and_a_third_that_is_nothing_have_the_same_front(part):
+    """Which another search finds."""
+    for seed in range(280 + part, 400, 2):
+        random_state = np.random.default_rng(seed)
+        grid = OccupancyGrid(np.zeros((24, 24)), corner_cutting=True)
+        wet = Cost("wet", random_state.integers(0, 4, (24, 24)) * (random_state.random((24, 24)) < 0.5))
+        nothing = Cost("nothing", np.zeros((24, 24)))
+        two, three = (
+            exact_front(GridPathProblem(grid, (0, 0), (23, 23), "cells", objectives)).F
+            for objectives in ((wet, "turn"), (wet, nothing, "turn"))
+        )
+        np.testing.assert_array_equal(two, three[:, [0, 2]])
 
 
 @pytest.mark.parametrize("seed", range(6))
