@@ -1,12 +1,14 @@
-"""What the fuzzers share: workers with limits of time and memory, what counts as a fault, counts for each kind, planted faults.
+"""What the fuzzers share: workers with limits of time and memory, what counts as a fault, counts a kind, planted faults.
 
-A fuzzer is a script that ends in ``sys.exit(main(make, planted))``. ``make(seed)`` returns what kind of case the seed stands for and a
-function without arguments that runs it; the same seed always gives the same case. A case is good if the function returns, or raises one
-of the ``sentences`` with one sentence as its text. Anything else is a fault: another error (an oracle raises `AssertionError`), a text
-that is no sentence, over `SECONDS` of processor time, over `MEMORY` bytes above the start, a worker that died or does not end.
+A fuzzer is a script that ends in ``sys.exit(main(make, planted))``. ``make(seed)`` returns what kind of case the seed stands
+for and a function without arguments that runs it; the same seed always gives the same case. A case is good if the function
+returns, or raises one of the ``sentences`` with one sentence as its text. Anything else is a fault: another error (an oracle
+raises `AssertionError`), a text that is no sentence, over `SECONDS` of processor time, over `MEMORY` bytes above the start, a
+worker that died or does not end.
 
-``planted`` names faults as context managers that break the product on purpose while they are open; ``--planted`` runs the fuzzer once
-for each and demands that it catches them all. Workers are forked, so this runs where `os.fork` does, and memory is read as Linux has it.
+``planted`` names faults as context managers that break the product on purpose while they are open; ``--planted`` runs the
+fuzzer once for each and demands that it catches them all. Workers are forked, so this runs where `os.fork` does, and memory
+is read as Linux has it.
 
     python benchmarks/fuzz/NAME.py --count 50000 --jobs 2
     python benchmarks/fuzz/NAME.py --seed 1234          # one case again, with its traceback
@@ -22,7 +24,7 @@ import traceback
 import unicodedata
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
@@ -80,7 +82,7 @@ def run_case(make: Make, seed: int, sentences: tuple[type[BaseException], ...]) 
 
 def fuzz(
     make: Make, seeds: range, jobs: int, sentences: tuple[type[BaseException], ...] = (GridPathError,)
-) -> Iterator[Outcome]:
+) -> Generator[Outcome]:
     """Yield the outcome of each seed as the workers get to it; a worker that dies or does not end is replaced."""
     context = multiprocessing.get_context("fork")
     shares = [list(seeds[k::jobs]) for k in range(jobs)]
@@ -98,7 +100,7 @@ def fuzz(
     try:
         while workers:
             ready = wait(list(workers), timeout=0.5)
-            for connection in ready:
+            for connection in [connection for connection in workers if connection in ready]:
                 worker = workers[connection]
                 try:
                     outcome = connection.recv()
@@ -238,7 +240,8 @@ def _catch(make: Make, planted, seeds: range, jobs: int, sentences) -> int:
         with breaks():
             outcomes = fuzz(make, seeds, jobs, sentences)
             cases, caught = 0, None
-            for cases, outcome in enumerate(outcomes, start=1):
+            for outcome in outcomes:
+                cases += 1
                 if outcome.fault:
                     caught = outcome
                     break
