@@ -5,8 +5,8 @@ Run it on one version of the package, keep the output, and hold another version 
     python benchmarks/bits.py --write bits.json
     python benchmarks/bits.py --against bits.json
 
-Runs differ in algorithm, representation, operators, objectives, treatment of obstacles, corner rule, grid and seed. Each level of
-each occurs several times. All is named, so that a change of a default is no change of a result.
+Runs differ in algorithm, representation, operators, objectives, treatment of obstacles, corner rule, grid and seed. Each level
+of each occurs several times. All is named, so that a change of a default is no change of a result.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import sys
 import warnings
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pymoo.optimize import minimize
@@ -96,14 +97,14 @@ def digest(configuration: tuple) -> str:
     algorithm, representation, objectives, obstacles, operators, corner_cutting, number = configuration
     grid = grid_of(corner_cutting, number)
     goal = (grid.width - 1, grid.height - 1)
-    limit = {"potential_limit": 40.0} if obstacles == "limit" else {}
-    problem = GridPathProblem(grid, (0, 0), goal, representation, objectives, obstacles, **limit)
+    limit = 40.0 if obstacles == "limit" else None
+    problem = GridPathProblem(grid, (0, 0), goal, representation, objectives, obstacles, potential_limit=limit)
     if algorithm == "exact":
         made = make_algorithm("exact", problem)
     else:
         given = {} if algorithm in OWN_CHILDREN else {"operators": OPERATORS[operators](problem)}
         made = make_algorithm(algorithm, problem, pop_size=24, **given)
-    result = minimize(problem, made, ("n_gen", 12), seed=number + 1, return_least_infeasible=True)
+    result: Any = minimize(problem, made, ("n_gen", 12), seed=number + 1, return_least_infeasible=True)
     total = hashlib.sha256()
     for values in (*result.pop.get("X", "F", "turn"), result.X, result.F):
         array = np.ascontiguousarray(values)
