@@ -64,8 +64,13 @@ def shown(value: Any) -> str:
         text = _BRIEF.repr(value)
     except Exception:
         text = f"an object of the class {type(value).__name__}"
-    text = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
-    return text if len(text) <= 2 * _MOST_SHOWN else f"{text[: 2 * _MOST_SHOWN]}..."
+    return printable(text, 2 * _MOST_SHOWN)
+
+
+def printable(text: object, most: int = 300) -> str:
+    """Return a text, such as a path, on one line: what cannot be printed escaped, and the middle left out if it is too long."""
+    line = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in str(text))
+    return line if len(line) <= most else f"{line[: most // 2]}...{line[-most // 2 :]}"
 
 
 def _scalar(value: Any) -> Any:

@@ -27,7 +27,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> Path:
     try:
         replace_file(path, data)
     except OSError as error:
-        shown = checks.shown(str(path))[1:-1]
+        shown = checks.printable(path)
         raise GridPathError(f"{shown}: the file cannot be written ({error.strerror}), expected a writable place") from None
     return path
 

@@ -73,7 +73,7 @@ def load_json(path: str | os.PathLike[str]) -> dict:
         If the file cannot be read or is no trade-off set of this format.
     """
     checks.file_path("path", path)
-    shown = checks.shown(str(path))[1:-1]
+    shown = checks.printable(path)
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
