@@ -1,4 +1,4 @@
-"""What arguments must be: each check returns the value to work with, or says in one sentence what was given and what was expected.
+"""What arguments must be: each check returns the value to work with, or says in a sentence what was given and what was expected.
 
 Numbers may be Python's or numpy's, or arrays without dimensions. Truth values are no numbers here, and masked values are none
 either: what they hide would be taken for real.
@@ -22,6 +22,9 @@ T = TypeVar("T")
 
 # Values are shown in messages up to so many letters.
 _MOST_SHOWN = 80
+
+# Longer paths are none on any system that the package runs on.
+_LONGEST_PATH = 4096
 
 # Python itself refuses to write out numbers of more than 4,300 digits.
 _MOST_BITS = 200
@@ -137,7 +140,7 @@ def whole(
         if (least is None or least <= found) and (most is None or found <= most):
             return found
     if expected is None:
-        ends = [f"at least {least:,}"] * (least is not None) + [f"at most {most:,}"] * (most is not None)
+        ends = [f"{words} {end:,}" for words, end in (("at least", least), ("at most", most)) if end is not None]
         expected = f"a whole number{' of ' if ends else ''}{' and '.join(ends)}"
     raise error(f"{name} is {shown(value)}, expected {expected}")
 
@@ -215,9 +218,10 @@ def file_path(name: str, value: Any, error: type[GridPathError] = GridPathError)
     """Return the path of a file or folder as a text."""
     try:
         found = os.fspath(value)
-    except Exception:
+        os.fsencode(found)
+    except Exception:  # the object's own failure, or a letter that no name of a file can have
         found = None
-    if not isinstance(found, str) or not found or "\0" in found:
+    if not isinstance(found, str) or not 0 < len(found) <= _LONGEST_PATH or "\0" in found:
         raise error(f"{name} is {shown(value)}, expected the path of a file or folder")
     return found
 

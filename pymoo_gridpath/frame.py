@@ -207,4 +207,6 @@ def within(values: np.ndarray, low: int, high: int) -> bool:
 
 def _whole_numbers(name: str, values: ArrayLike) -> np.ndarray:
     """Return an array of whole numbers, signed, since flips subtract them."""
-    return checks.array(name, values, None, "iu", expected="an array of whole numbers", error=GridError).astype(np.int64, copy=False)
+    return checks.array(name, values, None, "iu", expected="an array of whole numbers", error=GridError).astype(
+        np.int64, copy=False
+    )

@@ -86,7 +86,9 @@ class ColumnPaths:
         """Rows gained by the step into each column but the first: -1, 0 or 1, int8, shape (N, n_columns - 1)."""
         step = self.enter[:, 1:] - self.leave[:, :-1]
         if not within(step, -1, 1):
-            raise GridPathError("a path enters a column more than one row from where it left the one before, expected one at most")
+            raise GridPathError(
+                "a path enters a column more than one row from where it left the one before, expected one at most"
+            )
         return step.astype(np.int8)
 
     @functools.cached_property

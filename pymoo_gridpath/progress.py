@@ -33,7 +33,7 @@ class Progress:
     """
 
     def __init__(self, n_runs: int, n_gen: int, stream=None, interval: float = 0.1):
-        self.n_runs = checks.whole("n_runs", n_runs, 1)
+        self.n_runs = checks.whole("n_runs", n_runs, 0)
         self.n_gen = checks.whole("n_gen", n_gen, 1)
         self.stream = sys.stderr if stream is None else stream
         if not all(hasattr(self.stream, method) for method in ("write", "flush", "isatty")):

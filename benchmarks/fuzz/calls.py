@@ -19,8 +19,24 @@ from pymoo.termination import get_termination
 
 import pymoo_gridpath
 import pymoo_gridpath.study.runner
-from pymoo_gridpath import GridPathProblem, OccupancyGrid, algorithms, cli, convergence, decision, exact, fields, maps
-from pymoo_gridpath import objectives, operators, plotting, problems, progress, representations, study
+from pymoo_gridpath import (
+    GridPathProblem,
+    OccupancyGrid,
+    algorithms,
+    cli,
+    convergence,
+    decision,
+    exact,
+    fields,
+    maps,
+    objectives,
+    operators,
+    plotting,
+    problems,
+    progress,
+    representations,
+    study,
+)
 from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.maps.shipped import ShippedMap
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
@@ -61,7 +77,12 @@ class World:
     @cached_property
     def limited(self) -> GridPathProblem:
         return GridPathProblem(
-            self.grid, **self.query, representation="integer", obstacles="limit", potential_limit=5.0, objectives=["vulnerability"]
+            self.grid,
+            **self.query,
+            representation="integer",
+            obstacles="limit",
+            potential_limit=5.0,
+            objectives=["vulnerability"],
         )
 
     @cached_property

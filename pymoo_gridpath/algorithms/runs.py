@@ -101,7 +101,9 @@ def _check_termination(termination) -> None:
     if name.startswith("n_"):
         if len(arguments) != 1:
             raise GridPathError(f"termination is {checks.shown(termination)}, expected {expected}")
-        checks.number(f"the number of the termination {checks.shown(name)}", *arguments, 0.0, infinite=True, expected="zero or more")
+        checks.number(
+            f"the number of the termination {checks.shown(name)}", *arguments, 0.0, infinite=True, expected="zero or more"
+        )
     try:
         get_termination(name, *arguments)
     except Exception:  # pymoo raises bare ones

@@ -84,7 +84,9 @@ def load_json(path: str | os.PathLike[str]) -> dict:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise GridPathError(f"{shown}: the file holds no trade-off set, expected one with the format {FORMAT!r}")
     if content.get("format_version") != FORMAT_VERSION:
-        raise GridPathError(f"{shown}: format_version is {checks.shown(content.get('format_version'))}, expected {FORMAT_VERSION}")
+        raise GridPathError(
+            f"{shown}: format_version is {checks.shown(content.get('format_version'))}, expected {FORMAT_VERSION}"
+        )
     records = content.get("paths")
     if not isinstance(records, list) or not records:
         raise GridPathError(f"{shown}: paths is missing or empty, expected a list of records")

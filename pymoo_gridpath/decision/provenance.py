@@ -101,7 +101,9 @@ def plain(value):
 
 def _plain(value):
     if isinstance(value, Mapping):
-        return {str(key) if isinstance(key, str | int | float | None) else shown(key): _plain(item) for key, item in value.items()}
+        return {
+            str(key) if isinstance(key, str | int | float | None) else shown(key): _plain(item) for key, item in value.items()
+        }
     if isinstance(value, np.ndarray | np.generic):
         return _plain(value.tolist())
     if isinstance(value, list | tuple | set | frozenset):

@@ -78,7 +78,9 @@ def _columns(trade_off, objectives: Sequence[str] | None) -> list[int]:
     chosen = names if objectives is None else checks.names("objectives", objectives)
     unknown = [name for name in chosen if name not in names]
     if unknown:
-        raise GridPathError(f"the trade-off set has no objective {checks.shown(unknown[0])}, expected some of {', '.join(names)}")
+        raise GridPathError(
+            f"the trade-off set has no objective {checks.shown(unknown[0])}, expected some of {', '.join(names)}"
+        )
     if len(chosen) not in (2, 3) or len(set(chosen)) < len(chosen):
         hint = "" if len(names) < 4 else "; choose them by objectives="
         raise GridPathError(f"a front of {len(chosen)} objectives cannot be drawn, expected two or three different ones{hint}")

@@ -83,7 +83,9 @@ def save_figures(
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise GridPathError(f"{printable(directory)}: the folder cannot be made ({error.strerror}), expected a writable place") from None
+        raise GridPathError(
+            f"{printable(directory)}: the folder cannot be made ({error.strerror}), expected a writable place"
+        ) from None
     for name in _NAMES:
         for form in _METADATA:
             # Of an earlier set, and no longer true.

@@ -166,7 +166,9 @@ class GridPathProblem(Problem):
 
     def _check_representation(self, representation: Representation, axis: Axis) -> None:
         if not isinstance(representation, Representation):
-            raise GridPathError(f"representation is {shown(representation)}, expected a name such as 'integer', or a Representation")
+            raise GridPathError(
+                f"representation is {shown(representation)}, expected a name such as 'integer', or a Representation"
+            )
         if (representation.grid, representation.start, representation.goal) != (self.grid, self.start, self.goal):
             raise GridPathError(
                 f"the {representation.name} representation was made for another grid, start or goal than the problem has"
@@ -278,4 +280,3 @@ class GridPathProblem(Problem):
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         paths = self.decode(X)
         return self.score(paths), paths.turn, paths.interfering_cells
-

@@ -48,7 +48,9 @@ def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | 
     size = checks.whole("size", size, 2, MOST_CELLS, expected=f"2 to {MOST_CELLS:,} cells a side", error=GridError)
     p0 = checks.number("p0", p0, 0.0, 1.0, expected="a probability from 0 to 1", error=GridError)
     if not isinstance(random_state, np.random.Generator):
-        random_state = checks.whole("random_state", random_state, 0, expected="a seed or a numpy.random.Generator", error=GridError)
+        random_state = checks.whole(
+            "random_state", random_state, 0, expected="a seed or a numpy.random.Generator", error=GridError
+        )
         random_state = np.random.default_rng(random_state)
     empty = OccupancyGrid(np.zeros((size, size), dtype=bool), corner_cutting=True)
     frame = MonotoneFrame(empty, (0, 0), (size - 1, size - 1))

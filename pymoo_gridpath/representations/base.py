@@ -12,8 +12,8 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.frame import Axis, MonotoneFrame
 from pymoo_gridpath.fields import check_field
+from pymoo_gridpath.frame import Axis, MonotoneFrame
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
 from pymoo_gridpath.search.moves import HEADINGS, Moves

@@ -210,7 +210,9 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
         least += 1
     if max_cells is None:
         reachable = np.count_nonzero(grid.regions == grid.regions.flat[start])
-        fields = [check_costs("a field", field, grid) for field in checks.items("fields", fields, "costs of cells")] or [obstacle_potential(grid)]
+        fields = [check_costs("a field", field, grid) for field in checks.items("fields", fields, "costs of cells")] or [
+            obstacle_potential(grid)
+        ]
         fields = [field / (field.max() or 1.0) for field in fields]
         # Of several together, too: a path that costs nothing in either may be longer than those that cost nothing in one.
         sizes = range(1, 1 + (len(fields) if len(fields) <= _MOST_TOGETHER else 1))

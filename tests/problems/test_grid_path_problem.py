@@ -212,7 +212,10 @@ def test_rows_longer_than_a_part_are_evaluated(monkeypatch):
         ({"objectives": None}, "objectives is None, expected names such as 'length', or Objective objects"),
         ({"representation": "real"}, "no representation 'real'"),
         ({"representation": 3}, "representation is 3, expected a name such as 'integer', or a Representation"),
-        ({"representation": np.zeros(2)}, r"representation is an array of float64 of shape \(2,\), expected a name such as 'integer'"),
+        (
+            {"representation": np.zeros(2)},
+            r"representation is an array of float64 of shape \(2,\), expected a name such as 'integer'",
+        ),
         ({"grid": "office"}, "grid is 'office', expected an OccupancyGrid; load_map reads one"),
         ({"obstacles": "wall"}, "obstacles is 'wall', expected one of penalty, constraint, limit"),
         ({"penalty": -1}, "penalty is -1, expected a positive number"),
