@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.argument_types import folder, positive
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
 from pymoo_gridpath.errors import GridError, GridPathError
@@ -46,7 +47,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             # A terminal or pipe that lacks a letter of a map's name shows its number instead.
             stream.reconfigure(errors="backslashreplace")
-    arguments = _parser().parse_args(_join_cells(sys.argv[1:] if argv is None else argv))
+    given = sys.argv[1:] if argv is None else checks.names("argv", argv)
+    arguments = _parser().parse_args(_join_cells(given))
     try:
         code = arguments.run(arguments)
         sys.stdout.flush()

@@ -8,6 +8,7 @@ import re
 import uuid
 from pathlib import Path
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 
 #: Names of files that were being written when a process was killed.
@@ -22,11 +23,12 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> Path:
     GridPathError
         If the file cannot be written.
     """
-    path = Path(path)
+    path = Path(checks.file_path("path", path))
     try:
         replace_file(path, data)
     except OSError as error:
-        raise GridPathError(f"{path}: the file cannot be written ({error.strerror}), expected a writable place") from None
+        shown = checks.printable(path)
+        raise GridPathError(f"{shown}: the file cannot be written ({error.strerror}), expected a writable place") from None
     return path
 
 

@@ -5,17 +5,23 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
-from pymoo_gridpath.errors import GridError, UnreachableError
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
 
 Cell = tuple[int, int]
 
 SQRT2 = math.sqrt(2.0)
+
+# Numbers of cells that a float holds without gaps, with one bit to spare.
+_FARTHEST = 2.0**52
 
 
 class OccupancyGrid:
@@ -63,21 +69,14 @@ class OccupancyGrid:
         name: str = "grid",
     ):
         self._occupied = _as_occupied(occupied)
-        self._resolution = _as_float(resolution)
-        if not (math.isfinite(self._resolution) and self._resolution > 0):
-            raise GridError(f"resolution is {resolution}, expected a positive number of metres per cell")
-        pose = tuple(_as_float(v) for v in origin)
-        if len(pose) == 2:
-            pose = (*pose, 0.0)
-        if len(pose) != 3 or not all(math.isfinite(v) for v in pose):
-            raise GridError(f"origin is {origin!r}, expected (x, y) or (x, y, yaw) in metres and radians")
-        self._origin = pose
-        if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in pose)):
+        self._resolution = checks.number(
+            "resolution", resolution, 0.0, above=True, expected="a positive number of metres per cell", error=GridError
+        )
+        self._origin = _as_pose(origin)
+        if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in self._origin)):
             raise GridError(f"resolution {resolution} and origin {origin!r} put the map beyond what numbers can hold")
-        if not isinstance(corner_cutting, bool | np.bool_):
-            raise GridError(f"corner_cutting is {corner_cutting!r}, expected True or False")
-        self._corner_cutting = bool(corner_cutting)
-        self._name = str(name)
+        self._corner_cutting = checks.flag("corner_cutting", corner_cutting, GridError)
+        self._name = checks.text("name", name, GridError)
 
     # -- what it is ---------------------------------------------------------------------------------------------------
 
@@ -137,7 +136,7 @@ class OccupancyGrid:
         }
         unknown = set(changes) - set(arguments)
         if unknown:
-            raise TypeError(f"replace() has no argument {sorted(unknown)[0]!r}, expected one of {', '.join(arguments)}")
+            raise TypeError(f"replace() has no argument {shown(sorted(unknown)[0])}, expected one of {', '.join(arguments)}")
         return OccupancyGrid(**{**arguments, **changes})
 
     def __eq__(self, other) -> bool:
@@ -166,22 +165,23 @@ class OccupancyGrid:
 
     def contains(self, cell: Sequence[int]) -> bool:
         """Whether a cell lies on the grid."""
-        x, y = cell
+        x, y = _as_cell("cell", cell)
         return 0 <= x < self.width and 0 <= y < self.height
 
     def is_free(self, cell: Sequence[int]) -> bool:
         """Whether a cell lies on the grid and is not occupied."""
-        x, y = cell
-        return self.contains(cell) and not self._occupied[y, x]
+        x, y = _as_cell("cell", cell)
+        return self.contains((x, y)) and not self._occupied[y, x]
 
     def nearest_free(self, cell: Sequence[int]) -> Cell | None:
         """Return the free cell nearest to ``cell`` (Euclidean; ties: lower y, then lower x), or None if all are occupied."""
+        cell = _as_cell("cell", cell)
         ys, xs = np.nonzero(~self._occupied)
         if len(xs) == 0:
             return None
         # Squares of larger numbers would overflow.
         far = 10**6
-        x, y = (min(max(int(v), -far), size + far) for v, size in zip(cell, (self.width, self.height), strict=True))
+        x, y = (min(max(v, -far), size + far) for v, size in zip(cell, (self.width, self.height), strict=True))
         k = int(np.argmin((xs - x) ** 2 + (ys - y) ** 2))
         return int(xs[k]), int(ys[k])
 
@@ -201,23 +201,17 @@ class OccupancyGrid:
             If it is not a pair of whole numbers, lies outside the grid or is occupied; the message names the nearest free
             cell.
         """
-        try:
-            x, y = (int(v) for v in cell)
-            whole = (x, y) == tuple(cell)
-        except (TypeError, ValueError, OverflowError):
-            whole, x, y = False, 0, 0
-        if not whole:
-            raise GridError(f"{role} is {cell!r}, expected a cell (x, y) of two whole numbers")
+        x, y = _as_cell(checks.text("role", role, GridError), cell)
         if self.is_free((x, y)):
             return x, y
         near = self.nearest_free((x, y))
         hint = "the grid has no free cell" if near is None else f"the nearest free cell is ({near[0]}, {near[1]})"
         if not self.contains((x, y)):
             raise GridError(
-                f"{role} ({x}, {y}) lies outside the grid {self.name!r} of {self.width} x {self.height} cells "
+                f"{role} {shown((x, y))} lies outside the grid {shown(self.name)} of {self.width} x {self.height} cells "
                 f"(x from 0 to {self.width - 1}, y from 0 to {self.height - 1}, y up); {hint}"
             )
-        raise GridError(f"{role} ({x}, {y}) lies on an obstacle of the grid {self.name!r}; {hint}")
+        raise GridError(f"{role} ({x}, {y}) lies on an obstacle of the grid {shown(self.name)}; {hint}")
 
     def check_query(self, start: Sequence[int], goal: Sequence[int]) -> tuple[Cell, Cell]:
         """Return ``start`` and ``goal`` as pairs of ints if a path can lead from one to the other.
@@ -236,7 +230,7 @@ class OccupancyGrid:
         if region[start[1], start[0]] != region[goal[1], goal[0]]:
             raise UnreachableError(
                 f"goal ({goal[0]}, {goal[1]}) cannot be reached from start ({start[0]}, {start[1]}) on the grid "
-                f"{self.name!r}: obstacles separate them; expected two cells of the same free region"
+                f"{shown(self.name)}: obstacles separate them; expected two cells of the same free region"
             )
         return start, goal
 
@@ -253,7 +247,7 @@ class OccupancyGrid:
         numpy.ndarray, shape (..., 2)
             Metres.
         """
-        local = (np.asarray(cells, dtype=float) + 0.5) * self._resolution
+        local = (_pairs("cells", cells, "cells (x, y)").astype(float) + 0.5) * self._resolution
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
         return local @ np.array([[cos, sin], [-sin, cos]]) + np.array([x0, y0])
@@ -269,11 +263,20 @@ class OccupancyGrid:
         Returns
         -------
         numpy.ndarray of int, shape (..., 2)
+
+        Raises
+        ------
+        GridError
+            If the points are no pairs of finite numbers, or lie more than 2**52 cells away.
         """
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
-        local = (np.asarray(points, dtype=float) - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
-        return np.floor(local / self._resolution).astype(int)
+        local = (_pairs("points", points, "points (x, y) in metres") - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
+        with np.errstate(over="ignore"):
+            cells = np.floor(local / self._resolution)
+        if not (np.abs(cells) <= _FARTHEST).all():
+            raise GridError("points lie further away than cells can be counted, expected metres in the frame of the map")
+        return cells.astype(int)
 
     # -- the whole grid -----------------------------------------------------------------------------------------------
 
@@ -300,8 +303,7 @@ class OccupancyGrid:
         GridError
             If the radius is negative or not finite.
         """
-        if not (math.isfinite(radius) and radius >= 0):
-            raise GridError(f"robot radius is {radius}, expected a number of metres, zero or more")
+        radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
         cells = radius / self._resolution
         reach = math.ceil(min(cells + 0.5, max(self.shape)))
         offset = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0) ** 2
@@ -358,6 +360,7 @@ class OccupancyGrid:
             ``inf`` where no path leads (within ``limit``).
         """
         x, y = self.check_cell(start, "start")
+        limit = checks.number("limit", limit, 0.0, infinite=True, expected="a length in cells, zero or more", error=GridError)
         lengths = csgraph.dijkstra(self._graph, indices=y * self.width + x, limit=limit)
         return np.asarray(lengths).reshape(self.shape)
 
@@ -366,23 +369,57 @@ class OccupancyGrid:
         return self.move_graph()
 
 
-def _as_float(value) -> float:
-    """Return a number as a float, and what is no number as NaN."""
+def check_grid(grid: OccupancyGrid) -> OccupancyGrid:
+    """Return what is given as a grid if it is one."""
+    return checks.instance("grid", grid, OccupancyGrid, "; load_map reads one", error=GridError)
+
+
+def _as_pose(origin) -> tuple[float, ...]:
+    """Return (x, y, yaw)."""
+    expected = "(x, y) or (x, y, yaw) in metres and radians"
     try:
-        return float(value)
-    except (TypeError, ValueError):
-        return math.nan
+        pose = tuple(checks.number("origin", v, expected=expected) for v in checks.items("origin", origin, expected))
+    except GridPathError:
+        pose = ()
+    if len(pose) not in (2, 3):
+        raise GridError(f"origin is {shown(origin)}, expected {expected}")
+    return pose if len(pose) == 3 else (*pose, 0.0)
+
+
+def _as_cell(role: str, cell) -> Cell:
+    """Return a cell as a pair of ints, on the grid or not."""
+    if type(cell) is tuple and len(cell) == 2 and type(cell[0]) is int and type(cell[1]) is int:
+        return cell
+    try:
+        x, y = (int(v) for v in cell)
+        whole = all(isinstance(v, Real) for v in cell) and (x, y) == tuple(cell)
+    except Exception:
+        whole, x, y = False, 0, 0
+    if not whole or (isinstance(cell, np.ma.MaskedArray) and np.ma.getmaskarray(cell).any()):
+        raise GridError(f"{role} is {shown(cell)}, expected a cell (x, y) of two whole numbers")
+    return x, y
+
+
+def _pairs(name: str, values: ArrayLike, what: str) -> np.ndarray:
+    """Return an array of pairs of finite numbers, shape (..., 2)."""
+    expected = f"{what} as numbers of shape (..., 2)"
+    pairs = checks.array(name, values, expected=expected, finite=True, error=GridError)
+    if pairs.shape[-1:] != (2,):
+        raise GridError(f"{name} is {shown(pairs)}, expected {expected}")
+    return pairs
 
 
 def _as_occupied(occupied: ArrayLike) -> np.ndarray:
     """Return a read-only bool copy of an array of 0 and 1."""
-    array = np.asarray(occupied)
+    expected = "a two-dimensional array of booleans, or of 0 (free) and 1 (occupied)"
+    array = checks.array("occupied", occupied, expected=expected, error=GridError)
     if array.ndim != 2:
         raise GridError(f"a grid needs a two-dimensional array of occupied cells, got {array.ndim} dimensions")
     if array.size == 0:
         raise GridError(f"a grid needs at least one cell, got an array of shape {array.shape}")
-    if array.dtype != bool and (array.dtype.kind not in "iuf" or not np.isin(array, (0, 1)).all()):
+    if array.dtype != bool and not np.isin(array, (0, 1)).all():
         raise GridError("a grid needs an array of booleans, or of 0 (free) and 1 (occupied), got other values")
-    copy = array.astype(bool)
+    # Row by row whatever the order of the given one, for its bytes and its flat view are those of the grid.
+    copy = array.astype(bool, order="C")
     copy.flags.writeable = False
     return copy

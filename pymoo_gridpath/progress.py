@@ -7,6 +7,9 @@ import time
 
 import numpy as np
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
+
 #: What `say_that_it_compiles` says.
 COMPILING = "compiling the search for this machine, about 20 s the first time"
 
@@ -30,10 +33,12 @@ class Progress:
     """
 
     def __init__(self, n_runs: int, n_gen: int, stream=None, interval: float = 0.1):
-        self.n_runs = n_runs
-        self.n_gen = n_gen
+        self.n_runs = checks.whole("n_runs", n_runs, 0)
+        self.n_gen = checks.whole("n_gen", n_gen, 1)
         self.stream = sys.stderr if stream is None else stream
-        self.interval = interval
+        if not all(hasattr(self.stream, method) for method in ("write", "flush", "isatty")):
+            raise GridPathError(f"stream is {checks.shown(stream)}, expected a file to write text to")
+        self.interval = checks.number("interval", interval, 0.0, infinite=True, expected="seconds, zero or more")
         self.shown = self.stream.isatty()
         self._start = self._last = time.monotonic()
 

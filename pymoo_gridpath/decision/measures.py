@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pymoo_gridpath.objectives import Vulnerability
+from pymoo_gridpath.objectives import Vulnerability, field_of
 from pymoo_gridpath.representations.base import representation_of
 
 
@@ -32,7 +32,7 @@ class PathMeasures:
         given = [objective for objective in problem.objectives if isinstance(objective, Vulnerability)]
         self.problem = problem
         self._objective = given[0] if given else Vulnerability()
-        self.field = self._objective.field(problem.grid)
+        self.field = field_of(self._objective, problem.grid)
         self._sums = problem.representation.prepare(self.field)
 
     def vulnerability(self, paths) -> np.ndarray:

@@ -12,6 +12,7 @@ from typing import Any
 import moocore
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.decision import export, provenance
 from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures
@@ -126,17 +127,19 @@ class TradeOffSet:
 
     def __init__(self, problem, X, meta: dict | None = None):
         measures = PathMeasures(problem)
-        X = np.atleast_2d(np.asarray(X))
+        if meta is not None:
+            meta = provenance.plain(checks.instance("meta", meta, Mapping))
+        X = np.atleast_2d(checks.array("X", X, kinds="biufO", expected="rows of genes"))
         if X.size == 0:
             raise GridPathError("there are no paths to choose from, expected at least one row of genes")
-        if X.dtype.kind == "f":
+        if X.dtype.kind in "fO":
             X = problem.representation.genes(X)
         keep, self.feasible = _select(problem, measures, X)
         self.problem = problem
         self.X = X[keep]
         self.paths = problem.decode(self.X)
         self.F = np.asarray(problem.score(self.paths), dtype=float)
-        self.meta = provenance.plain(meta or {})
+        self.meta = meta or {}
         self._cells = [np.asarray(self.paths.cells(k)) for k in range(len(keep))]
         self.measures = self._measure(measures)
 
@@ -157,7 +160,8 @@ class TradeOffSet:
         GridPathError
             If there is no Result, one holds no paths, or they belong to different problems.
         """
-        runs = [results] if hasattr(results, "opt") else list(results)
+        runs = [results] if hasattr(results, "opt") else checks.items("results", results, "a Result of pymoo, or several")
+        _check_settings(settings)
         if not runs:
             raise GridPathError("there are no Results, expected one or more")
         problem = _common_problem(runs)
@@ -181,6 +185,7 @@ class TradeOffSet:
             If there are no rows, or they do not fit the problem.
         """
         representation_of(problem)
+        _check_settings(settings)
         return cls(problem, X, _meta(problem, settings, []))
 
     def _measure(self, measures: PathMeasures) -> dict[str, np.ndarray]:
@@ -220,12 +225,13 @@ class TradeOffSet:
         GridPathError
             If there is no such name.
         """
-        if name not in self.named:
-            raise GridPathError(f"there is no path {name!r}, expected one of {', '.join(self.named)}")
+        if not (isinstance(name, str) and name in self.named):
+            raise GridPathError(f"there is no path {checks.shown(name)}, expected one of {', '.join(self.named)}")
         return self.named[name]
 
     def names(self, index: int) -> tuple[str, ...]:
         """Return the names that the path at an index goes by, none for most, and none if the paths are not legal."""
+        index = checks.whole("index", index, 0, len(self) - 1)
         return tuple(name for name, k in self.named.items() if k == index and self.feasible)
 
     @property
@@ -318,6 +324,13 @@ class TradeOffSet:
         return write_whole(path, export.json_text(self).encode())
 
 
+def check_set(trade_off: TradeOffSet) -> TradeOffSet:
+    """Return a trade-off set if it is one, or has what figures ask of one."""
+    if all(hasattr(trade_off, name) for name in ("problem", "F", "objective_names", "feasible", "index")):
+        return trade_off
+    return checks.instance("trade_off", trade_off, TradeOffSet)
+
+
 def _select(problem, measures: PathMeasures, X: np.ndarray) -> tuple[np.ndarray, bool]:
     """Return the rows of X to keep, in order, and whether they are legal."""
     paths = problem.decode(X)
@@ -363,6 +376,10 @@ def _common_problem(runs: Sequence) -> Any:
 
 
 _MUST_AGREE = ("representation", "axis", "max_cells", "objectives", "potential_limit")
+
+
+def _check_settings(settings: Mapping | None) -> None:
+    checks.instance("settings", settings, Mapping, optional=True)
 
 
 def _meta(problem, settings: Mapping | None, runs: list[dict]) -> dict:

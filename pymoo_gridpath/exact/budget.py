@@ -9,10 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import psutil
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath import checks
 
 # Share of the free memory that a search may take by default; the rest is for its end, and for others.
 _SHARE = 0.7
@@ -70,10 +69,10 @@ class Budget:
     def __post_init__(self):
         for name in ("max_seconds", "max_labels", "max_memory"):
             value = getattr(self, name)
-            if value is not None and not (isinstance(value, int | float | np.integer | np.floating) and value >= 0):
-                raise GridPathError(f"{name} is {value!r}, expected a number, zero or more")
-        if not (self.watch is None or callable(self.watch)):
-            raise GridPathError(f"watch is {self.watch!r}, expected a function of one argument, the Meter")
+            # A whole number larger than a float holds is a budget that is never used up.
+            if value is not None and not (isinstance(value, int) and not isinstance(value, bool) and value > 2**63):
+                checks.number(name, value, 0.0, infinite=True, expected="a number, zero or more")
+        checks.function("watch", self.watch, "a function of one argument, the Meter", optional=True)
 
 
 class Meter:

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps._files import MAX_CELLS, require_file
@@ -93,7 +94,7 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
     >>> load_map("warehouse")
     <OccupancyGrid 'warehouse': 60 x 40 cells of 0.5 m, 541 occupied, corners may not be cut>
     """
-    name = os.fspath(path)
+    name = checks.file_path("path", path)
     shipped = not os.path.isfile(path) and (name in shipped_names() or _is_bare(name))
     kind = "a plain text map" if shipped else map_format(path)
     reader = _FORMATS[kind]

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
 
@@ -23,6 +24,7 @@ _repr.maxlevel, _repr.maxstring = 2, 60
 
 def require_file(path: str | os.PathLike[str]) -> Path:
     """Return the path if it names a file, else raise MapError."""
+    checks.file_path("path", path)
     if os.path.isfile(path):
         return Path(path)
     found = "found a directory" if os.path.isdir(path) else "no such file"
@@ -62,7 +64,7 @@ def check_size(path: str | os.PathLike[str], width: int, height: int, line: int 
 
 def check_unknown(path: str | os.PathLike[str], unknown: str) -> None:
     """Raise MapError unless ``unknown`` is one of its two choices."""
-    if unknown not in UNKNOWN_CHOICES:
+    if not (isinstance(unknown, str) and unknown in UNKNOWN_CHOICES):
         raise MapError(path, f"the option unknown is {shorten(unknown)}, expected 'occupied' or 'free'")
 
 

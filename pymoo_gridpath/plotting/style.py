@@ -13,6 +13,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from numpy.typing import ArrayLike
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
+
 
 @dataclass(frozen=True)
 class NameStyle:
@@ -139,6 +142,17 @@ def widen_limits(ax: Axes) -> None:
             formatter.set_useOffset(False)
 
 
+def check_units(units: str) -> None:
+    """Refuse units of a map that are none."""
+    if not (isinstance(units, str) and units in ("cells", "m")):
+        raise GridPathError(f"units is {checks.shown(units)}, expected 'cells' or 'm'")
+
+
+def check_axes(ax: Axes | None) -> None:
+    """Refuse what is no Axes to draw into."""
+    checks.instance("ax", ax, Axes, " of matplotlib", optional=True)
+
+
 def warn_infeasible(ax: Axes, trade_off) -> None:
     """Say above the Axes that the paths are not legal, if so."""
     if not trade_off.feasible:
@@ -149,6 +163,6 @@ def warn_infeasible(ax: Axes, trade_off) -> None:
 def by_path(trade_off, which) -> dict[int, list[str]]:
     """Return the names to show by the index of the path that bears them, in the order of the names."""
     groups: dict[int, list[str]] = {}
-    for name in [which] if isinstance(which, str) else which:
+    for name in checks.names("which", which):
         groups.setdefault(trade_off.index(name), []).append(name)
     return groups

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from numbers import Real
 from typing import Literal
 
 import numpy as np
 from pymoo.core.problem import Problem
 
-from pymoo_gridpath.errors import CapabilityError, GridPathError
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
-from pymoo_gridpath.frame import Axis
-from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.objectives import Objective, Turn, make_objectives
+from pymoo_gridpath.frame import Axis, check_axis
+from pymoo_gridpath.grid import OccupancyGrid, check_grid
+from pymoo_gridpath.objectives import Objective, Turn, field_of, make_objectives
+from pymoo_gridpath.paths import check_paths
 from pymoo_gridpath.representations import CellSequence, Representation, make_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]
@@ -117,21 +119,18 @@ class GridPathProblem(Problem):
         potential_limit: float | None = None,
         axis: Axis = "auto",
     ):
-        if not isinstance(grid, OccupancyGrid):
-            raise GridPathError(f"grid is of the class {type(grid).__name__}, expected an OccupancyGrid; load_map reads one")
-        self.grid = grid
+        self.grid = check_grid(grid)
         self.start, self.goal = grid.check_query(start, goal)
         self.objectives = make_objectives(objectives)
         if obstacles == "constraint" and penalty is not None:
             raise GridPathError("penalty is for obstacles='penalty' and 'limit', not for obstacles='constraint'")
         self.obstacles = obstacles
+        checks.one_of("obstacles", obstacles, OBSTACLES)
         given = self._default_penalty() if penalty is None else penalty
-        if not (isinstance(given, Real) and 0 < given < np.inf):
-            raise GridPathError(f"penalty is {given!r}, expected a positive number")
-        self.penalty = float(given)
-        self.potential_limit = potential_limit
-        self._check_obstacles()
-        fields = [_checked(objective, grid) for objective in self.objectives]
+        self.penalty = checks.number("penalty", given, 0.0, above=True, expected="a positive number")
+        self.potential_limit = self._check_limit(potential_limit)
+        check_axis(axis)
+        fields = [field_of(objective, grid) for objective in self.objectives]
         if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
             # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
             costs = [field for field in fields if field is not None]
@@ -153,24 +152,23 @@ class GridPathProblem(Problem):
             vtype=representation.vtype,
         )
 
-    def _check_obstacles(self) -> None:
-        if self.obstacles not in OBSTACLES:
-            raise GridPathError(f"obstacles is {self.obstacles!r}, expected one of {', '.join(OBSTACLES)}")
+    def _check_limit(self, potential_limit: float | None) -> float | None:
         if self.obstacles != "limit":
-            if self.potential_limit is not None:
+            if potential_limit is not None:
                 raise GridPathError(f"potential_limit is for obstacles='limit', not for obstacles={self.obstacles!r}")
-        elif "vulnerability" not in self.objective_names:
+            return None
+        if "vulnerability" not in self.objective_names:
             raise GridPathError(
-                f"obstacles='limit' limits the vulnerability, which is not among the objectives {self.objective_names}"
+                f"obstacles='limit' limits the vulnerability, which is not among the objectives {shown(self.objective_names)}"
             )
-        elif not (isinstance(self.potential_limit, Real) and self.potential_limit > 0):
-            raise GridPathError(
-                f"potential_limit is {self.potential_limit!r}, expected a positive number with obstacles='limit'"
-            )
+        expected = "a positive number with obstacles='limit'"
+        return checks.number("potential_limit", potential_limit, 0.0, above=True, infinite=True, expected=expected)
 
     def _check_representation(self, representation: Representation, axis: Axis) -> None:
         if not isinstance(representation, Representation):
-            raise GridPathError(f"representation is {representation!r}, expected a name such as 'integer', or a Representation")
+            raise GridPathError(
+                f"representation is {shown(representation)}, expected a name such as 'integer', or a Representation"
+            )
         if (representation.grid, representation.start, representation.goal) != (self.grid, self.start, self.goal):
             raise GridPathError(
                 f"the {representation.name} representation was made for another grid, start or goal than the problem has"
@@ -238,22 +236,29 @@ class GridPathProblem(Problem):
         return self.representation.decode(X)
 
     def score(self, paths) -> np.ndarray:
-        """Return the plain objectives of paths, without any penalty, shape (N, n_obj)."""
-        F = [f(paths, sums) for f, sums in zip(self.objectives, self._sums, strict=True)]
-        for objective, values in zip(self.objectives, F, strict=True):
-            if np.shape(values) != (len(paths),):
+        """Return the plain objectives of paths, without any penalty, float, shape (N, n_obj)."""
+        check_paths(paths)
+        F = np.empty((len(paths), self.n_obj))
+        for k, (objective, sums) in enumerate(zip(self.objectives, self._sums, strict=True)):
+            values = np.asarray(objective(paths, sums))
+            if values.shape != (len(paths),) or values.dtype.kind not in "biuf":
                 raise GridPathError(
-                    f"the objective {objective.name!r} returned values of shape {np.shape(values)} for {len(paths)} paths, "
-                    f"expected one a path"
+                    f"the objective {shown(objective.name)} returned values of shape {values.shape} for "
+                    f"{counted(len(paths), 'path')}, of type {values.dtype}, expected one number a path"
                 )
-        return np.column_stack(F)
+            F[:, k] = values
+        if np.isnan(F).any():
+            i, k = np.argwhere(np.isnan(F))[0]
+            raise GridPathError(f"the objective {shown(self.objective_names[k])} returned NaN for path {i}, expected a number")
+        return F
 
     def over_limit(self, vulnerability: np.ndarray) -> np.ndarray:
         """Return by how much vulnerabilities exceed the potential limit; 0 for sums that rounding alone sets apart from it."""
-        assert self.potential_limit is not None
-        over = np.asarray(vulnerability - self.potential_limit, dtype=float)
-        over[np.abs(over) <= _ROUNDING * self.potential_limit] = 0.0
-        return over
+        if self.potential_limit is None:
+            raise GridPathError("the problem has no potential limit, expected one with obstacles='limit'")
+        over = checks.array("vulnerability", vulnerability, expected="an array of numbers") - self.potential_limit
+        over = np.asarray(over, dtype=float)
+        return np.where(np.abs(over) <= _ROUNDING * self.potential_limit, 0.0, over)
 
     def _evaluate(self, x, out, *args, **kwargs):
         # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
@@ -275,29 +280,3 @@ class GridPathProblem(Problem):
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         paths = self.decode(X)
         return self.score(paths), paths.turn, paths.interfering_cells
-
-
-def _checked(objective: Objective, grid: OccupancyGrid) -> np.ndarray | None:
-    """Return the field of an objective, zero in occupied cells if it is not finite there, or None if it has none."""
-    given = objective.field(grid)
-    if given is None:
-        return None
-    try:
-        field = np.asarray(given)
-    except ValueError:  # rows of different lengths
-        field = np.asarray(None)
-    if field.shape != grid.shape or field.dtype.kind not in "biuf":
-        what = f"{field.dtype} of shape {field.shape}" if field.dtype.kind != "O" else type(given).__name__
-        raise GridPathError(
-            f"the field of the objective {objective.name!r} is {what}, expected numbers of shape {grid.shape}, the (height, "
-            f"width) of the grid"
-        )
-    if np.isfinite(field).all():
-        return field
-    if not np.isfinite(field[~grid.occupied]).all():
-        y, x = np.argwhere(~np.isfinite(field) & ~grid.occupied)[0]
-        raise GridPathError(
-            f"the field of the objective {objective.name!r} is {field[y, x]:g} in the free cell ({x}, {y}), expected a finite "
-            f"number; mark cells that no path may enter as occupied"
-        )
-    return np.where(np.isfinite(field), field, 0.0)

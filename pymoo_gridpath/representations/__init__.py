@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from pymoo_gridpath.errors import GridPathError, nearest
-from pymoo_gridpath.frame import Axis
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.frame import Axis, check_axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.representations.absolute import AbsoluteRepresentation
 from pymoo_gridpath.representations.base import MonotoneRepresentation, Representation
@@ -47,12 +48,10 @@ def make_representation(
     GridError, UnreachableError
         If the query cannot be used, see `MonotoneFrame` and `CellSequence`.
     """
-    if name not in REPRESENTATIONS:
-        raise GridPathError(f"there is no representation {name!r}; {nearest(name, REPRESENTATIONS)}")
-    representation: Any = REPRESENTATIONS[name]
+    representation: Any = REPRESENTATIONS[checks.known("representation", name, REPRESENTATIONS)]
     if issubclass(representation, MonotoneRepresentation):
         return representation(grid, start, goal, axis)
-    if axis != "auto":
+    if check_axis(axis) != "auto":
         raise GridPathError(f"axis is {axis!r}, but paths of the {name} representation advance along none; expected 'auto'")
     return representation(grid, start, goal)
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.files import UNFINISHED, make_folder, replace_file
 from pymoo_gridpath.study.lock import locked
@@ -62,10 +63,11 @@ class Store:
     """
 
     def __init__(self, folder: str | os.PathLike):
-        self.folder = Path(folder)
+        self.folder = Path(checks.file_path("folder", folder))
 
     def path(self, key: str) -> Path:
         """Return the file of a run, whether it is there or not."""
+        key = checks.text("key", key)
         return self.folder / "runs" / key[:2] / f"{key}.npz"
 
     def write(self, key: str, data: bytes) -> None:
@@ -76,7 +78,7 @@ class Store:
         GridPathError
             If it cannot be written, as when the disk is full.
         """
-        self._write(self.path(key), data)
+        self._write(self.path(key), checks.instance("data", data, bytes))
 
     def read(self, key: str, genes: bool = True) -> RunRecord:
         """Return a run.
@@ -110,7 +112,7 @@ class Store:
         """
         present = self._present()
         found = StoredRuns()
-        for key in keys:
+        for key in checks.names("keys", keys):
             if key not in present:
                 found.missing.append(key)
                 continue
@@ -134,6 +136,8 @@ class Store:
 
     def write_plan(self, plan: Plan, study: str | None = None) -> None:
         """Store the plan, and the text of the study file if there is one."""
+        checks.instance("plan", plan, Plan)
+        checks.instance("study", study, str, " of the study file", optional=True)
         self._write(self.folder / "plan.json", json.dumps(plan.to_json(), separators=(",", ":")).encode())
         file = self.folder / "study.toml"
         if study is not None:

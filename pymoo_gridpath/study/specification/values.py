@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import StudyError, nearest
 
 # Places in a study: keys and indices.
@@ -29,8 +30,7 @@ def key_of(where: Where) -> str:
 
 def show(value: object) -> str:
     """Return a value as the message of an error shows it: as TOML writes it, and not too long."""
-    text = str(value).lower() if isinstance(value, bool) else repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    return str(value).lower() if isinstance(value, bool) else shown(value)
 
 
 def check_keys(table: Mapping[str, Any], known: Iterable[str], where: Where, owner: str) -> None:
@@ -40,7 +40,7 @@ def check_keys(table: Mapping[str, Any], known: Iterable[str], where: Where, own
         if key not in known:
             if where:
                 refuse_key_of_study(key, (*where, key), owner)
-            raise StudyError(f"{owner} has no key {key!r}; {nearest(key, known)}", (*where, key))
+            raise StudyError(f"{owner} has no key {shown(key)}; {nearest(shown(key), known)}", (*where, key))
 
 
 def refuse_key_of_study(key: str, where: Where, owner: str) -> None:
@@ -65,9 +65,10 @@ def text(value: object, where: Where) -> str:
 
 def flag(value: object, where: Where) -> bool:
     """Return true or false."""
-    if not isinstance(value, bool):
+    found = _plain(value)
+    if not isinstance(found, bool):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected true or false", where)
-    return value
+    return found
 
 
 def choice(value: object, known: Iterable[str], where: Where) -> str:
@@ -127,7 +128,7 @@ def seeds(value: object, where: Where) -> tuple[int, ...]:
             raise StudyError(f"{key_of(where)} has no count, expected such as {{ first = 100, count = 11 }}", where)
         first = whole(given.get("first", 1), (*where, "first"), 0, MAX_SEED - MAX_SEEDS)
         return tuple(range(first, first + whole(given["count"], (*where, "count"), 1, MAX_SEEDS)))
-    if isinstance(value, Iterable) and not isinstance(value, str):
+    if isinstance(value, Collection) and not isinstance(value, str | bytes):
         return each_once(value, where, MAX_SEED)
     number = _plain(value)
     if isinstance(number, int) and not isinstance(number, bool) and 1 <= number <= MAX_SEEDS:
@@ -146,6 +147,8 @@ def each_once(numbers: Iterable[Any], where: Where, most: int | None = None) -> 
         if number in found:
             raise StudyError(f"{key_of(where)} lists {number} twice, expected each once", where)
         found[number] = None
+        if len(found) > MAX_SEEDS:
+            break
     if not 1 <= len(found) <= MAX_SEEDS:
         raise StudyError(f"{key_of(where)} has {len(found)} entries, expected 1 to {MAX_SEEDS}", where)
     return tuple(found)
@@ -156,7 +159,7 @@ def plain_json(value: object, where: Where) -> Any:
     value = _plain(value)
     if isinstance(value, Mapping):
         return {str(key): plain_json(item, where) for key, item in value.items()}
-    if isinstance(value, Iterable) and not isinstance(value, str):
+    if isinstance(value, Collection) and not isinstance(value, str | bytes):
         return [plain_json(item, where) for item in value]
     if isinstance(value, float) and math.isfinite(value):
         return int(value) if value.is_integer() else value
