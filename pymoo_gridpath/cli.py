@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import io
 import os
 import re
@@ -16,11 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from pymoo_gridpath.argument_types import folder, positive
-from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
+from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
-from pymoo_gridpath.progress import Progress, say_that_it_compiles
+from pymoo_gridpath.progress import Progress
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.commands import add_study_commands
 
@@ -357,8 +356,7 @@ def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
         progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
         return stop.requested
 
-    say = on_compiling(say_that_it_compiles) if _searches_in_kernels(problem, algorithm) else contextlib.nullcontext()
-    with Progress(arguments.runs, arguments.generations) as progress, say:
+    with Progress(arguments.runs, arguments.generations) as progress:
         if isinstance(algorithm, ExactFront):
             algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)
             return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)

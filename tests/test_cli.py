@@ -1,6 +1,5 @@
 """The command line as a user meets it: real processes, their output, files and exit codes."""
 
-import contextlib
 import csv
 import io
 import json
@@ -13,7 +12,6 @@ import time
 
 import pytest
 
-from pymoo_gridpath import cli
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.progress import COMPILING, Progress
@@ -141,22 +139,6 @@ def test_plan_with_one_objective(tmp_path, free_map):
     done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", "--objectives", "length", *FAST, "-o", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     assert "shortest" in done.stdout
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [([], True), (["--algorithm", "exact", "--corner-cutting"], True), (["--representation", "integer"], False)],
-)
-def test_compiling_is_said_where_the_search_is_compiled(tmp_path, free_map, options, said, capsys, monkeypatch):
-    @contextlib.contextmanager
-    def compiling(tell):
-        tell()
-        yield
-
-    monkeypatch.setattr(cli, "on_compiling", compiling)
-    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", "-o", tmp_path / "out", *options]
-    assert main([*map(str, arguments), *([] if "exact" in options else FAST)]) == 0
-    assert capsys.readouterr().err == (f"{COMPILING}\n" if said else "")
 
 
 @pytest.mark.parametrize(
