@@ -206,7 +206,7 @@ def _plan(arguments) -> int:
         grid,
         start,
         goal,
-        representation=arguments.representation or _default_representation(grid, arguments.axis),
+        representation=arguments.representation,
         objectives=arguments.objectives,
         obstacles=arguments.obstacles or "penalty",
         penalty=arguments.penalty,
@@ -320,11 +320,6 @@ def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None
             f"(bottom) to {grid.height - 1}"
         )
     return grid.check_query(start, goal)
-
-
-def _default_representation(grid: OccupancyGrid, axis: str) -> str:
-    """Return the coding for any path, or the paper's in the paper's world and where paths advance along an axis."""
-    return "integer" if grid.corner_cutting or axis != "auto" else "cells"
 
 
 def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:

@@ -50,7 +50,7 @@ def is_ctrl_c(error: BaseException | None) -> bool:
 
 
 def seconds_compiling() -> float:
-    """Return for how many seconds numba has compiled in this process so far; what it kept from an earlier one is not compiled."""
+    """Return for how many seconds numba has compiled in this process so far, which leaves out what it kept from an earlier."""
     return 0.0 if _compiling is None else _compiling.seconds
 
 

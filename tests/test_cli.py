@@ -12,6 +12,7 @@ import time
 
 import pytest
 
+from pymoo_gridpath import cli
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.progress import COMPILING, Progress

@@ -15,7 +15,7 @@ from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective, Turn, make_objectives
-from pymoo_gridpath.representations import CellSequence, Representation, make_representation
+from pymoo_gridpath.representations import CellSequence, Representation, default_representation, make_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]
 # Chosen by measurement on the shipped maps and random grids, see the parameter.
@@ -41,9 +41,10 @@ class GridPathProblem(Problem):
     grid : OccupancyGrid
     start, goal : (int, int)
         Free cells (x, y).
-    representation : {"integer", "binary", "mixed", "absolute", "cells"} or Representation, default "integer"
-        How a path is coded as decision variables. The first four are those of the paper, for paths that never turn back;
-        "cells" codes every path, see `CellSequence`, and needs operators of its own.
+    representation : {"cells", "integer", "binary", "mixed", "absolute"} or Representation, optional
+        How a path is coded as decision variables. "cells" codes every path, see `CellSequence`, and needs `path_operators`; the
+        other four are those of the paper, for paths that never turn back along an axis. The default is "cells", and "integer"
+        where corners may be cut, which is the world of the paper, or an ``axis`` is given, see `default_representation`.
     objectives : sequence of str or Objective, default ("length", "vulnerability")
         What is minimised, in this order; names are "length", "vulnerability" and "turn".
     obstacles : {"penalty", "constraint", "limit"}, default "penalty"
@@ -110,7 +111,7 @@ class GridPathProblem(Problem):
         grid: OccupancyGrid,
         start: Sequence[int],
         goal: Sequence[int],
-        representation: str | Representation = "integer",
+        representation: str | Representation | None = None,
         objectives: Sequence[str | Objective] = ("length", "vulnerability"),
         obstacles: Obstacles = "penalty",
         penalty: float | None = None,
@@ -132,6 +133,8 @@ class GridPathProblem(Problem):
         self.potential_limit = potential_limit
         self._check_obstacles()
         fields = [_checked(objective, grid) for objective in self.objectives]
+        if representation is None:
+            representation = default_representation(grid.corner_cutting, axis)
         if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
             # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
             costs = [field for field in fields if field is not None]
