@@ -67,7 +67,7 @@ def test_json_holds_every_path_and_what_made_it(trade_off, tmp_path):
 
 
 def test_json_has_null_where_a_number_is_not_finite(tmp_path):
-    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4))
+    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "integer")
     path = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]]).to_json(tmp_path / "front.json")
     assert strict(path.read_text())["paths"][0]["clearance"] is None
 

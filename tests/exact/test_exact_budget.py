@@ -55,7 +55,7 @@ def test_a_front_that_took_too_long_is_looked_for_again():
     assert len(problem.pareto_front()) == len(problem.pareto_set()) > 1
     assert problem.pareto_front() is problem.pareto_front()
     with pytest.raises(GridPathError, match="max_seconds is -1"):
-        GridPathProblem(random_grid(20, 4), (0, 0), (19, 19)).pareto_front(max_seconds=-1)
+        GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), "integer").pareto_front(max_seconds=-1)
 
 
 TWO, THREE = ("length", "vulnerability"), ("length", "vulnerability", "turn")
@@ -123,7 +123,7 @@ def test_what_watches_ends_the_search_and_is_not_in_the_result():
 
 
 def test_a_pareto_front_that_takes_too_long_is_none_and_says_so():
-    problem = GridPathProblem(random_grid(32, 6), (0, 0), (31, 31))
+    problem = GridPathProblem(random_grid(32, 6), (0, 0), (31, 31), "integer")
     with pytest.warns(UserWarning, match="no Pareto front: the search ended early, the time budget of 0 s is used up"):
         assert problem.pareto_front(max_seconds=0.0) is None
     assert len(problem.pareto_front()) > 5

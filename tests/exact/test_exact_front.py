@@ -68,7 +68,7 @@ def test_ends_of_the_front_are_the_shortest_path_and_the_safest(item):
 
 
 def test_front_and_set_of_a_problem_belong_together():
-    problem = GridPathProblem(random_grid(24, 1), (0, 0), (23, 23))
+    problem = GridPathProblem(random_grid(24, 1), (0, 0), (23, 23), "integer")
     front, paths = problem.pareto_front(), problem.pareto_set()
     np.testing.assert_array_equal(problem.evaluate(paths), front)
     assert (problem.decode(paths).interfering_cells == 0).all()
@@ -77,44 +77,44 @@ def test_front_and_set_of_a_problem_belong_together():
 
 def test_the_front_of_any_path_dominates_that_of_monotone_ones():
     grid = random_grid(24, 1)
-    monotone = GridPathProblem(grid, (0, 0), (23, 23)).pareto_front()
+    monotone = GridPathProblem(grid, (0, 0), (23, 23), "integer").pareto_front()
     any_path = GridPathProblem(grid, (0, 0), (23, 23), representation="cells").pareto_front()
     assert all((any_path <= f).all(axis=1).any() for f in monotone)
 
 
 def test_more_objectives_keep_every_point():
     grid = random_grid(16, 2)
-    two = GridPathProblem(grid, (0, 0), (15, 15)).pareto_front()
-    three = GridPathProblem(grid, (0, 0), (15, 15), objectives=["length", "vulnerability", "turn"]).pareto_front()
+    two = GridPathProblem(grid, (0, 0), (15, 15), "integer").pareto_front()
+    three = GridPathProblem(grid, (0, 0), (15, 15), "integer", objectives=["length", "vulnerability", "turn"]).pareto_front()
     assert {tuple(f) for f in two} <= {tuple(f[:2]) for f in three}
     assert len(three) > len(two)
 
 
 def test_penalty_and_constraint_leave_the_front_as_it_is_and_a_limit_cuts_it():
     grid = random_grid(20, 3)
-    F = GridPathProblem(grid, (0, 0), (19, 19)).pareto_front()
-    constrained = GridPathProblem(grid, (0, 0), (19, 19), obstacles="constraint").pareto_front()
+    F = GridPathProblem(grid, (0, 0), (19, 19), "integer").pareto_front()
+    constrained = GridPathProblem(grid, (0, 0), (19, 19), "integer", obstacles="constraint").pareto_front()
     np.testing.assert_array_equal(constrained, F)
     limit = float(np.median(F[:, 1]))
-    limited = GridPathProblem(grid, (0, 0), (19, 19), obstacles="limit", potential_limit=limit).pareto_front()
+    limited = GridPathProblem(grid, (0, 0), (19, 19), "integer", obstacles="limit", potential_limit=limit).pareto_front()
     np.testing.assert_array_equal(limited, F[F[:, 1] <= limit])
 
 
 def test_objectives_that_do_not_add_up_have_no_exact_front():
     grid = random_grid(8, 0)
     for extra, word in ((NoField(), "has no field"), (Negative(), "negative or infinite")):
-        problem = GridPathProblem(grid, (0, 0), (7, 7), objectives=["length", extra])
+        problem = GridPathProblem(grid, (0, 0), (7, 7), "integer", objectives=["length", extra])
         assert problem.pareto_front() is None
         assert problem.pareto_set() is None
         with pytest.raises(CapabilityError, match=word):
             minimize(problem, ExactFront())
     with pytest.raises(GridPathError, match="'inconsistent' scores a path otherwise"):
-        exact_front(GridPathProblem(grid, (0, 0), (7, 7), objectives=["length", Inconsistent()]))
+        exact_front(GridPathProblem(grid, (0, 0), (7, 7), "integer", objectives=["length", Inconsistent()]))
 
 
 def test_more_than_three_objectives_are_refused():
     a, b = (Cost(name, np.ones((8, 8))) for name in "ab")
-    problem = GridPathProblem(random_grid(8, 0), (0, 0), (7, 7), objectives=["length", "turn", a, b])
+    problem = GridPathProblem(random_grid(8, 0), (0, 0), (7, 7), "integer", objectives=["length", "turn", a, b])
     assert problem.pareto_front() is None
     with pytest.raises(CapabilityError, match="4 objectives, expected at most 3"):
         exact_front(problem)
@@ -210,7 +210,7 @@ def test_what_is_no_path_problem_or_no_budget_is_refused():
     ):
         with pytest.raises(GridPathError, match="the problem is of the class ZDT1, expected a path problem"):
             use()
-    problem = GridPathProblem(OccupancyGrid(np.zeros((4, 4))), (0, 0), (3, 3))
+    problem = GridPathProblem(OccupancyGrid(np.zeros((4, 4))), (0, 0), (3, 3), "integer")
     with pytest.raises(GridPathError, match="budget is 3, expected a Budget"):
         exact_front(problem, 3)  # pyright: ignore[reportArgumentType]
     with pytest.raises(GridPathError, match="max_labels is 1j, expected a number, zero or more"):
@@ -233,11 +233,13 @@ def test_files_say_whether_a_front_is_complete():
 
 
 def test_a_front_of_one_point_is_told_in_the_singular():
-    assert exact_front(GridPathProblem(OccupancyGrid(np.zeros((4, 4))), (0, 0), (3, 3))).message == "all 1 point found"
+    assert (
+        exact_front(GridPathProblem(OccupancyGrid(np.zeros((4, 4))), (0, 0), (3, 3), "integer")).message == "all 1 point found"
+    )
 
 
 def test_as_an_algorithm():
-    problem = GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), obstacles="constraint")
+    problem = GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), "integer", obstacles="constraint")
     result = minimize(problem, ExactFront(), seed=3)
     np.testing.assert_array_equal(result.F, problem.pareto_front())
     assert result.success is True
@@ -251,7 +253,7 @@ def test_as_an_algorithm():
 
 
 def test_a_limit_that_no_path_keeps():
-    problem = GridPathProblem(random_grid(10, 1), (0, 0), (9, 9), obstacles="limit", potential_limit=1e-12)
+    problem = GridPathProblem(random_grid(10, 1), (0, 0), (9, 9), "integer", obstacles="limit", potential_limit=1e-12)
     result = minimize(problem, ExactFront())
     assert result.F is None
     assert result.message == "no legal path keeps the potential limit of 1e-12"
@@ -338,4 +340,4 @@ def test_dense_scenarios_have_a_front_of_few_paths():
     # With p0 = 1 only the cells of one path are free.
     for seed in range(5):
         grid = random_dense_grid(16, 1.0, seed)
-        assert len(GridPathProblem(grid, (0, 0), (15, 15)).pareto_front()) >= 1
+        assert len(GridPathProblem(grid, (0, 0), (15, 15), "integer").pareto_front()) >= 1
