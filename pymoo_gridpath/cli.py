@@ -245,8 +245,8 @@ def _plan(arguments) -> int:
     elif results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
     print(trade_off.table(max_rows=MAX_ROWS))
-    x, y = goal
-    print(f"for comparison, the shortest of all paths on this grid has length {grid.shortest_lengths(start)[y, x]:.3f}")
+    if trade_off.advice:
+        print(f"pymoo-gridpath: {trade_off.advice}", file=sys.stderr)
     if len(results) > 1:
         print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(str(file) for file in files), flush=True)

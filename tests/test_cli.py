@@ -55,7 +55,7 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
         assert {"points", "length", "vulnerability", "turn", "names"} <= set(path)
     assert document["seed"] == 4
     shortest = load_map(free_map).shortest_lengths((0, 0))[3, 5]
-    assert f"shortest of all paths on this grid has length {shortest:.3f}" in done.stdout
+    assert f"shortest of all paths on this grid has length {shortest:.3f} ({shortest:.3f} m)\n" in done.stdout
     assert min(path["length"] for path in paths) >= shortest - 1e-9
 
 
@@ -140,6 +140,22 @@ def test_plan_with_one_objective(tmp_path, free_map):
     done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", "--objectives", "length", *FAST, "-o", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     assert "shortest" in done.stdout
+
+
+def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
+    # The short way is past the top of the wall, one column back; the way that never turns back is past its foot.
+    path = tmp_path / "wall.txt"
+    path.write_text("\n".join(["........", ".....##.", *["......#."] * 10, "........"]))
+    query = ["plan", str(path), "--start", "5,10", "--goal", "7,12", "-o", str(tmp_path / "out")]
+    assert main([*query, "--axis", "x", "--algorithm", "exact"]) == 0
+    captured = capsys.readouterr()
+    assert "NOTE: the shortest path found is" in captured.out
+    assert len([line for line in captured.err.splitlines() if "longer than the shortest of all; try the" in line]) == 1
+    assert main([*query, "--representation", "cells", "--algorithm", "exact"]) == 0
+    captured = capsys.readouterr()
+    assert "for comparison" in captured.out and "longer" not in captured.out + captured.err
+    assert main([*query, "--objectives", "vulnerability,turn", "--algorithm", "exact"]) == 0
+    assert "for comparison" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
