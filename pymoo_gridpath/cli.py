@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import io
 import os
 import re
@@ -17,11 +16,11 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.argument_types import folder, positive
-from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
+from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
-from pymoo_gridpath.progress import Progress, say_that_it_compiles
+from pymoo_gridpath.progress import Progress
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.commands import add_study_commands
 
@@ -209,7 +208,7 @@ def _plan(arguments) -> int:
         grid,
         start,
         goal,
-        representation=arguments.representation or _default_representation(grid, arguments.axis),
+        representation=arguments.representation,
         objectives=arguments.objectives,
         obstacles=arguments.obstacles or "penalty",
         penalty=arguments.penalty,
@@ -248,8 +247,8 @@ def _plan(arguments) -> int:
     elif results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
     print(trade_off.table(max_rows=MAX_ROWS))
-    x, y = goal
-    print(f"for comparison, the shortest of all paths on this grid has length {grid.shortest_lengths(start)[y, x]:.3f}")
+    if trade_off.advice:
+        print(f"pymoo-gridpath: {trade_off.advice}", file=sys.stderr)
     if len(results) > 1:
         print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(str(file) for file in files), flush=True)
@@ -325,11 +324,6 @@ def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None
     return grid.check_query(start, goal)
 
 
-def _default_representation(grid: OccupancyGrid, axis: str) -> str:
-    """Return the coding for any path, or the paper's in the paper's world and where paths advance along an axis."""
-    return "integer" if grid.corner_cutting or axis != "auto" else "cells"
-
-
 def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:
     inflated = grid.inflate(radius)
     try:
@@ -359,8 +353,7 @@ def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
         progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
         return stop.requested
 
-    say = on_compiling(say_that_it_compiles) if _searches_in_kernels(problem, algorithm) else contextlib.nullcontext()
-    with Progress(arguments.runs, arguments.generations) as progress, say:
+    with Progress(arguments.runs, arguments.generations) as progress:
         if isinstance(algorithm, ExactFront):
             algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)
             return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)

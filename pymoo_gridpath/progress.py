@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 
@@ -15,8 +16,11 @@ COMPILING = "compiling the search for this machine, about 20 s the first time"
 
 
 def say_that_it_compiles() -> None:
-    """Say why nothing happens yet, on a line of its own that takes the place of a progress line."""
-    print(("\r\x1b[K" if sys.stderr.isatty() else "") + COMPILING, file=sys.stderr)
+    """Say why nothing happens yet, on a line of its own on standard error that takes the place of a progress line."""
+    # Programs without a console have none, and whoever reads it may have gone.
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError):
+            print(("\r\x1b[K" if sys.stderr.isatty() else "") + COMPILING, file=sys.stderr, flush=True)
 
 
 class Progress:

@@ -24,6 +24,7 @@ from pymoo.util.reference_direction import (
 from pymoo_gridpath.algorithms import _arguments
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.differential import WholeNumberDE
+from pymoo_gridpath.algorithms.display import PathOutput
 from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
 from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
@@ -33,6 +34,7 @@ from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessT
 from pymoo_gridpath.operators.mating import knows_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
+from pymoo_gridpath.problems import GridPathProblem
 
 _OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
 _PACKAGES = {"scikit-learn": "sklearn"}
@@ -67,7 +69,7 @@ def make_algorithm(
         cell sequences. A repair or duplicate elimination that the algorithm does not take is left out.
     **kwargs
         Other arguments of the algorithm: what its pymoo class takes and heeds, such as ``ref_dirs``, ``n_neighbors``,
-        ``termination`` or ``seed``.
+        ``termination``, ``seed`` or ``output``, by default a `PathOutput`, which ``verbose=True`` prints.
 
     Returns
     -------
@@ -164,6 +166,8 @@ def build(
         given.update(_fitted(row, operators, accepted))
     _arguments.check(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
     settings = _arguments.fresh_defaults(accepted)
+    if isinstance(problem, GridPathProblem):
+        settings["output"] = PathOutput()
     settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
     settings |= _smoothness(row, problem, smoothness, given)
     settings |= given | _references(row, problem, pop_size, given)

@@ -115,6 +115,12 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     hidden = len(trade_off) - len(rows)
     if hidden:
         lines.append(f"... and {hidden} more")
+    if trade_off.least_length is not None:
+        metres = trade_off.least_length * trade_off.problem.grid.resolution
+        shortest = f"{trade_off.least_length:.3f} ({metres:.3f} m)"
+        lines.append(f"for comparison, the shortest of all paths on this grid has length {shortest}")
+    if trade_off.advice:
+        lines.append(f"NOTE: {trade_off.advice}")
     return "\n".join(lines)
 
 

@@ -19,11 +19,14 @@ from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import clearance
 from pymoo_gridpath.files import write_whole
-from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.representations.base import MonotoneRepresentation, representation_of
 from pymoo_gridpath.versions import versions
 
 #: What members of a trade-off set go by, in the order in which tables and figures show them.
 NAMES = ("shortest", "safest", "smoothest", "knee")
+
+# By which share the shortest path found may be longer than the shortest of all before that is remarked on.
+_MUCH_LONGER = 0.05
 
 _LEAST = {"shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
 
@@ -292,8 +295,37 @@ class TradeOffSet:
             return f"no path keeps the potential limit of {self.problem.potential_limit:g}"
         return f"no path is legal; these cross {counted(crossed, 'occupied cell')}, the fewest found"
 
+    @functools.cached_property
+    def least_length(self) -> float | None:
+        """Length in cells of the shortest of all legal paths on the grid in any coding; None if length is no objective."""
+        if "length" not in self.objective_names:
+            return None
+        x, y = self.problem.goal
+        return float(self.problem.grid.shortest_lengths(self.problem.start)[y, x])
+
+    @property
+    def advice(self) -> str:
+        """What to try where the shortest path found is over 5 % longer than the shortest of all; empty where it is not.
+
+        It is empty, too, if length is no objective, if the paths are not legal, and under a potential limit, which the shortest
+        of all may not keep.
+        """
+        if self.least_length is None or not self.feasible or self.problem.potential_limit is not None:
+            return ""
+        excess = float(self.measures["length"].min()) / self.least_length - 1.0
+        if excess <= _MUCH_LONGER:
+            return ""
+        if isinstance(self.problem.representation, MonotoneRepresentation):
+            attempts = "the representation 'cells', which codes every path, path-aware operators or more generations"
+        else:
+            attempts = "path-aware operators, more generations or the exact front"
+        return f"the shortest path found is {excess:.0%} longer than the shortest of all; try {attempts}"
+
     def table(self, max_rows: int | None = None) -> str:
         """Return a plain text table, one line a path, with the names of those that have one.
+
+        Where length is an objective a line says how long the shortest of all paths is, and another, if those found are much
+        longer, what to try: `least_length` and `advice`.
 
         Parameters
         ----------

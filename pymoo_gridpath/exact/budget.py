@@ -12,6 +12,7 @@ from pathlib import Path
 import psutil
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.compiled import seconds_compiling
 
 # Share of the free memory that a search may take by default; the rest is for its end, and for others.
 _SHARE = 0.7
@@ -47,7 +48,8 @@ class Budget:
     Attributes
     ----------
     max_seconds : float, optional
-        Asked many times a second if kernels are compiled, else about once a second.
+        Of wall time, without that of compiling kernels at their first use. Asked many times a second if kernels are compiled,
+        else about once a second.
     max_labels : int, optional
         Labels open and closed at a time.
     max_memory : int, optional
@@ -75,6 +77,10 @@ class Budget:
         checks.function("watch", self.watch, "a function of one argument, the Meter", optional=True)
 
 
+def _now() -> float:
+    return time.perf_counter() - seconds_compiling()
+
+
 class Meter:
     """Watch over a budget.
 
@@ -93,7 +99,7 @@ class Meter:
     """
 
     def __init__(self, budget: Budget):
-        self.begin = time.perf_counter()
+        self.begin = _now()
         self.seconds = math.inf if budget.max_seconds is None else budget.max_seconds
         self.labels = _MOST_LABELS if budget.max_labels is None else min(budget.max_labels, _MOST_LABELS)
         self.memory = _SHARE * free_memory() if budget.max_memory is None else min(budget.max_memory, _MOST_MEMORY)
@@ -104,8 +110,8 @@ class Meter:
 
     @property
     def elapsed(self) -> float:
-        """Seconds since the search began."""
-        return time.perf_counter() - self.begin
+        """Seconds since the search began, without those of compiling."""
+        return _now() - self.begin
 
     def pops(self, n_labels: int, at_most: int) -> int:
         """Return how many labels may be popped before the next check; each opens up to eight others."""

@@ -17,14 +17,17 @@ from pymoo_gridpath.frame import Axis, check_axis
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.objectives import Objective, Turn, field_of, make_objectives
 from pymoo_gridpath.paths import check_paths
-from pymoo_gridpath.representations import CellSequence, Representation, make_representation
+from pymoo_gridpath.representations import CellSequence, Representation, default_representation, make_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]
 # Chosen by measurement on the shipped maps and random grids, see the parameter.
 DEFAULT_PENALTY = 2.0
 
-# How long pareto_front() may take, since pymoo asks for it unbidden.
-PARETO_SECONDS = 60.0
+# How long pareto_front() may take unless told, since pymoo asks for it unbidden.
+PARETO_SECONDS = 2.0
+
+# Where the operators are that pymoo brings: for real numbers, bits and permutations.
+_OPERATORS_OF_PYMOO = "pymoo.operators."
 
 # Sums of the same costs in another order differ by no more than this share of themselves.
 _ROUNDING = 1e-12
@@ -43,9 +46,10 @@ class GridPathProblem(Problem):
     grid : OccupancyGrid
     start, goal : (int, int)
         Free cells (x, y).
-    representation : {"integer", "binary", "mixed", "absolute", "cells"} or Representation, default "integer"
-        How a path is coded as decision variables. The first four are those of the paper, for paths that never turn back;
-        "cells" codes every path, see `CellSequence`, and needs operators of its own.
+    representation : {"cells", "integer", "binary", "mixed", "absolute"} or Representation, optional
+        How a path is coded as decision variables. "cells" codes every path, see `CellSequence`, and needs `path_operators`; the
+        other four are those of the paper, for paths that never turn back along an axis. The default is "cells", and "integer"
+        where corners may be cut, which is the world of the paper, or an ``axis`` is given, see `default_representation`.
     objectives : sequence of str or Objective, default ("length", "vulnerability")
         What is minimised, in this order; names are "length", "vulnerability" and "turn".
     obstacles : {"penalty", "constraint", "limit"}, default "penalty"
@@ -84,11 +88,16 @@ class GridPathProblem(Problem):
     ``pareto_front()`` and ``pareto_set()`` return the exact front of the legal paths, without penalties, and a path for each
     point (see `exact_front`; the first call computes both). They return None if an objective does not add up along a path,
     that is, if it is neither length nor turn and has no field; if there are more than three objectives; or, with a warning,
-    if ``max_seconds`` (60 by default) do not suffice. pymoo asks for the front of its own accord where it prints progress
-    (``verbose=True``), to show how far a run is from it.
+    if ``max_seconds`` do not suffice: 2 by default, of wall time and without compiling, because pymoo asks for the front of its
+    own accord where it prints progress (``verbose=True``). Large maps and three objectives need more. What did not suffice once
+    is not tried again; only a call with more seconds is a new attempt.
 
     Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
     ``interfering_cells`` of each individual: ``pop.get("turn")``. It draws no random number.
+
+    Algorithms need operators that fit: `path_operators`, `paper_operators`, or all that `make_algorithm` builds. Those that
+    pymoo's algorithms have by default are for real numbers and find no legal path on most maps. The first evaluation of genes
+    that are no whole numbers, or of a generation of such operators without a legal path, warns of that, once a problem.
 
     References
     ----------
@@ -112,7 +121,7 @@ class GridPathProblem(Problem):
         grid: OccupancyGrid,
         start: Sequence[int],
         goal: Sequence[int],
-        representation: str | Representation = "integer",
+        representation: str | Representation | None = None,
         objectives: Sequence[str | Objective] = ("length", "vulnerability"),
         obstacles: Obstacles = "penalty",
         penalty: float | None = None,
@@ -131,6 +140,8 @@ class GridPathProblem(Problem):
         self.potential_limit = self._check_limit(potential_limit)
         check_axis(axis)
         fields = [field_of(objective, grid) for objective in self.objectives]
+        if representation is None:
+            representation = default_representation(grid.corner_cutting, axis)
         if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
             # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
             costs = [field for field in fields if field is not None]
@@ -142,6 +153,9 @@ class GridPathProblem(Problem):
             self._check_representation(representation, axis)
         self.representation = representation
         self._front: ExactResult | None = None
+        # With how many seconds there was none, and why.
+        self._no_front: tuple[float, str] | None = None
+        self._warned_of_operators = False
         self._sums = [None if field is None else representation.prepare(field) for field in fields]
         super().__init__(
             n_var=representation.n_var,
@@ -150,6 +164,8 @@ class GridPathProblem(Problem):
             xl=representation.xl,
             xu=representation.xu,
             vtype=representation.vtype,
+            # Among them the algorithm.
+            requires_kwargs=True,
         )
 
     def _check_limit(self, potential_limit: float | None) -> float | None:
@@ -187,7 +203,7 @@ class GridPathProblem(Problem):
     # -- the exact front ----------------------------------------------------------------------------------------------
 
     def pareto_front(self, *args, **kwargs):
-        """Return the exact front, shape (N, n_obj), or None, see Notes; ``max_seconds`` (default 60) may be given."""
+        """Return the exact front, shape (N, n_obj), or None, see Notes; ``max_seconds`` (default 2) may be given."""
         return self._unless_none("pareto_front", *args, **kwargs)
 
     def pareto_set(self, *args, **kwargs):
@@ -209,24 +225,23 @@ class GridPathProblem(Problem):
         found = self._exact(max_seconds)
         return None if found is None else found.X
 
-    def _exact(self, max_seconds: float) -> ExactResult | None:
+    def _exact(self, max_seconds: float | None) -> ExactResult | None:
         """Return the exact front, kept for the next call, or None if there is none or the time is too short."""
-        if self._front is None:
-            budget = Budget(max_seconds=max_seconds)
+        budget = Budget(max_seconds=max_seconds)
+        seconds = np.inf if max_seconds is None else max_seconds
+        if self._front is None and (self._no_front is None or seconds > self._no_front[0]):
             try:
                 found = exact_front(self, budget)
             except CapabilityError:
                 return None
             except GridPathError as error:
-                warnings.warn(f"no Pareto front: {error}", stacklevel=7)
-                return None
-            if not found.complete:
-                warnings.warn(
-                    f"no Pareto front: the search {found.message} (max_seconds={max_seconds:g})",
-                    stacklevel=7,
-                )
-                return None
-            self._front = found
+                self._no_front = seconds, str(error)
+            else:
+                more = "; pareto_front(max_seconds=...) gives it more" if found.seconds >= seconds else ""
+                self._front = found if found.complete else None
+                self._no_front = seconds, f"the search {found.message}{more}"
+        if self._front is None and self._no_front is not None:
+            warnings.warn(f"no Pareto front: {self._no_front[1]}", stacklevel=7)
         return self._front
 
     # -- measures -----------------------------------------------------------------------------------------------------
@@ -276,7 +291,33 @@ class GridPathProblem(Problem):
         out["F"] = F
         out["turn"] = turn
         out["interfering_cells"] = interfering
+        if not self._warned_of_operators:
+            self._warn_of_operators(np.asarray(x), interfering, kwargs.get("algorithm"))
+
+    def _warn_of_operators(self, X: np.ndarray, interfering: np.ndarray, algorithm) -> None:
+        """Warn, once, of genes or generations that come of operators which know nothing of paths."""
+        if X.dtype.kind == "f" and (np.rint(X) != X).any():
+            what = "genes that are no whole numbers, as operators for real numbers make them, hardly ever code a legal path"
+        elif len(interfering) and interfering.all() and (name := _maker_of_pymoo(algorithm)):
+            what = f"there is no legal path among {len(X)} of pymoo's {name}, which knows nothing of paths"
+        else:
+            return
+        self._warned_of_operators = True
+        warnings.warn(
+            f"{what}; operators that make legal paths: NSGA2(**path_operators(problem)), with path_operators from "
+            f"pymoo_gridpath.operators",
+            stacklevel=2,
+        )
 
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         paths = self.decode(X)
         return self.score(paths), paths.turn, paths.interfering_cells
+
+
+def _maker_of_pymoo(algorithm) -> str:
+    """Return the name of the operator that made the rows under evaluation if it is one that pymoo brings, else nothing."""
+    if getattr(algorithm, "is_initialized", False):
+        maker = getattr(getattr(algorithm, "mating", None), "crossover", None)
+    else:
+        maker = getattr(getattr(algorithm, "initialization", None), "sampling", None)
+    return type(maker).__name__ if type(maker).__module__.startswith(_OPERATORS_OF_PYMOO) else ""

@@ -23,6 +23,29 @@ REPRESENTATIONS: dict[str, type[Representation]] = {
 }
 
 
+def default_representation(corner_cutting: bool, axis: Axis = "auto") -> str:
+    """Return the name of the representation of a query for which none is given.
+
+    Parameters
+    ----------
+    corner_cutting : bool
+        Whether corners may be cut on the grid.
+    axis : {"auto", "x", "y"}, default "auto"
+
+    Returns
+    -------
+    str
+        "cells", which codes every path; "integer", the paper's, where corners may be cut, which is the world of the paper, or
+        where an axis is given, along which paths are to advance.
+
+    Examples
+    --------
+    >>> default_representation(corner_cutting=False), default_representation(corner_cutting=True)
+    ('cells', 'integer')
+    """
+    return IntegerRepresentation.name if corner_cutting or axis != "auto" else CellSequence.name
+
+
 def make_representation(
     name: str, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"
 ) -> Representation:
@@ -65,5 +88,6 @@ __all__ = [
     "MixedRepresentation",
     "MonotoneRepresentation",
     "Representation",
+    "default_representation",
     "make_representation",
 ]

@@ -9,9 +9,7 @@ import sys
 from pathlib import Path
 
 from pymoo_gridpath.argument_types import folder, positive
-from pymoo_gridpath.compiled import on_compiling
 from pymoo_gridpath.errors import counted
-from pymoo_gridpath.progress import say_that_it_compiles
 from pymoo_gridpath.study.progress import duration
 
 EXIT_OK, EXIT_FAILED_RUNS, EXIT_INTERRUPTED = 0, 1, 130
@@ -83,7 +81,6 @@ def _init(arguments) -> int:
     return EXIT_OK
 
 
-@on_compiling(say_that_it_compiles)
 def _check(arguments) -> int:
     """Check a study file, and say how many runs it asks for, how many are stored, and about how long the others will take."""
     from pymoo_gridpath.study.estimate import estimate
@@ -110,7 +107,6 @@ def _check(arguments) -> int:
     return EXIT_OK
 
 
-@on_compiling(say_that_it_compiles)
 def _run(arguments) -> int:
     """Run what is not stored yet of a study; what was stored by an earlier run, even if it was killed, is kept."""
     from pymoo_gridpath.study.executors import LocalProcesses, dask_executor

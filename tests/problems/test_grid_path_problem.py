@@ -162,7 +162,7 @@ def test_objectives_of_ones_own():
 )
 def test_the_same_paths_have_the_same_values_in_cells(options, corner_cutting):
     grid = GRID if corner_cutting else OccupancyGrid(np.random.default_rng(2).random((12, 12)) < 0.15, corner_cutting=False)
-    integer = GridPathProblem(grid, START, GOAL, objectives=("length", "vulnerability", "turn", Cells()), **options)
+    integer = GridPathProblem(grid, START, GOAL, "integer", ("length", "vulnerability", "turn", Cells()), **options)
     coding = CellSequence(grid, START, GOAL, max_cells=grid.occupied.size)
     cells = GridPathProblem(grid, START, GOAL, coding, integer.objectives, **options)
     X = genes(integer)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps import load_map, map_format, read_scen, read_text_header, shipped_maps
+from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.build import build_grid, pack_grid
 from pymoo_gridpath.study.plan import PlannedProblem, run_key
 from pymoo_gridpath.study.specification import canonical
@@ -151,15 +152,13 @@ def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: Occ
 def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
     """Return the canonical form of a problem."""
     corner_cutting = item.grid.get("random", item.grid)["corner_cutting"]
-    # As on the command line.
-    default = "integer" if corner_cutting or spec.axis != "auto" else "cells"
     return canonical.settle(
         {
             "grid": item.grid,
             "start": list(item.start),
             "goal": list(item.goal),
             "objectives": list(spec.objectives),
-            "representation": spec.representation or default,
+            "representation": spec.representation or default_representation(corner_cutting, spec.axis),
             "obstacles": spec.obstacles,
             "penalty": spec.penalty,
             "potential_limit": spec.potential_limit,
