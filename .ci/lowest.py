@@ -35,7 +35,9 @@ def main() -> None:
     python = project["requires-python"].removeprefix(">=")
     if sys.version_info[:2] != tuple(map(int, python.split("."))):
         found = ".".join(map(str, sys.version_info[:2]))
-        raise SystemExit(f"lowest versions are tested with Python {python}, not {found}: say which it is by PYTHON=python{python}")
+        raise SystemExit(
+            f"lowest versions are tested with Python {python}, not {found}: say which it is by PYTHON=python{python}"
+        )
     print("\n".join(pins(project)))
 
 
