@@ -326,7 +326,7 @@ class OccupancyGrid:
             ``y * width + x``. Each step is listed in both directions.
         """
         free = ~self._occupied
-        index = np.arange(free.size).reshape(free.shape)
+        index = np.arange(free.size, dtype=np.int32).reshape(free.shape)  # what csgraph takes before scipy 1.15
         pairs, lengths = [], []
 
         def add(a, b, legal, length):

@@ -34,7 +34,7 @@ NAME_STYLES = {
     "knee": NameStyle("#CC3377", (0, (6, 1.5, 1.2, 1.5)), "o"),
 }
 OCCUPIED = "#3b3f45"
-POTENTIAL = ("#ffffff", "#f3d9a4")
+POTENTIAL = ["#ffffff", "#f3d9a4"]  # a list: of a tuple of two, matplotlib 3.8.0 takes the second for an opacity
 OTHERS = "#8a8f98"
 REFERENCE = "#5b5f66"
 WARNING = "#b00020"

@@ -225,7 +225,8 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
 
 def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal: int) -> float:
     """Return the length of the shortest among the paths that are cheapest in a field."""
-    tail, head = np.repeat(np.arange(field.size), np.diff(graph.indptr)), graph.indices
+    head = graph.indices
+    tail = np.repeat(np.arange(field.size, dtype=head.dtype), np.diff(graph.indptr))
     cost = sparse.csr_array((field[head].astype(float), head, graph.indptr), shape=graph.shape)
     least = csgraph.dijkstra(cost, indices=start)
     # The cheapest paths are those whose every step adds no more than it must; sums of potentials are exact, others nearly.
