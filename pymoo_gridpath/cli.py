@@ -18,10 +18,10 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.argument_types import folder, positive
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
-from pymoo_gridpath.errors import GridError, GridPathError
+from pymoo_gridpath.errors import GridError, GridPathError, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
-from pymoo_gridpath.progress import Progress, say_that_it_compiles
+from pymoo_gridpath.progress import Progress, say, say_that_it_compiles, warnings_as_lines
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.commands import add_study_commands
 
@@ -50,16 +50,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     given = sys.argv[1:] if argv is None else checks.names("argv", argv)
     arguments = _parser().parse_args(_join_cells(given))
     try:
-        code = arguments.run(arguments)
+        with warnings_as_lines():
+            code = arguments.run(arguments)
         sys.stdout.flush()
         return code
     except GridPathError as error:
-        print(f"pymoo-gridpath: {error}", file=sys.stderr)
+        say(error)
         return EXIT_BAD_INPUT
     except (KeyboardInterrupt, SystemError) as error:
         if not is_ctrl_c(error):
             raise
-        print("pymoo-gridpath: interrupted", file=sys.stderr)
+        say("interrupted")
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         # The reader has gone; keep the interpreter from complaining when it flushes.
@@ -67,7 +68,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return EXIT_OK
     except OSError as error:
         where = f" ({error.filename})" if error.filename else ""
-        print(f"pymoo-gridpath: the output cannot be written: {error.strerror or error}{where}", file=sys.stderr)
+        say(f"the output cannot be written: {error.strerror or error}{where}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_BAD_INPUT
 
@@ -78,7 +79,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 class _Parser(argparse.ArgumentParser):
     def error(self, message):
         """Say what was wrong in one line."""
-        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {visible(message)} (see {self.prog} --help)\n")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -234,12 +235,12 @@ def _plan(arguments) -> int:
         )
     _make_directory(arguments.output)
 
-    print(f"{grid.name}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
+    print(f"{visible(grid.name)}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
     with _StopOnCtrlC() as stop:
         results = _search(problem, algorithm, arguments, stop)
         stop.searching = False
         if not any(len(result.pop) for result in results):
-            print(f"pymoo-gridpath: no path was found: {results[0].message}", file=sys.stderr)
+            say(f"no path was found: {results[0].message}")
             return EXIT_NO_PATH
         trade_off, files = _write_paths(results, arguments, name, stop.requested)
 
@@ -252,17 +253,15 @@ def _plan(arguments) -> int:
     print(f"for comparison, the shortest of all paths on this grid has length {grid.shortest_lengths(start)[y, x]:.3f}")
     if len(results) > 1:
         print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
-    print("written: " + ", ".join(str(file) for file in files), flush=True)
+    print("written: " + ", ".join(visible(file) for file in files), flush=True)
     history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
     figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
-    print("figures: " + ", ".join(str(file) for file in figures))
+    print("figures: " + ", ".join(visible(file) for file in figures))
     if stop.requested:
         return EXIT_INTERRUPTED
     if not trade_off.feasible:
-        print(
-            "pymoo-gridpath: no legal path was found; a larger --pop-size, more --generations or --runs, or "
-            "--obstacles constraint may find one",
-            file=sys.stderr,
+        say(
+            "no legal path was found; a larger --pop-size, more --generations or --runs, or --obstacles constraint may find one"
         )
         return EXIT_NO_PATH
     return EXIT_OK
@@ -296,7 +295,7 @@ def _info(arguments) -> int:
     if known and known.start and known.goal:
         rows["query"] = f"from {_text(known.start)} to {_text(known.goal)}, robot radius {known.radius or 0:g} m"
     for key, value in rows.items():
-        print(f"{key:<13} {value}")
+        print(f"{key:<13} {visible(value)}")
     return EXIT_OK
 
 
