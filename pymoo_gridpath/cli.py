@@ -18,7 +18,7 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.argument_types import folder, positive
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
-from pymoo_gridpath.errors import GridError, GridPathError, visible
+from pymoo_gridpath.errors import GridError, GridPathError, counted, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
 from pymoo_gridpath.progress import Progress, say, say_that_it_compiles, warnings_as_lines
@@ -198,6 +198,7 @@ def _plan(arguments) -> int:
     # Imported late, since `maps`, `info` and --help do without.
     from pymoo_gridpath.algorithms import ExactFront, make_algorithm
     from pymoo_gridpath.convergence import ConvergenceRecorder
+    from pymoo_gridpath.decision.provenance import describe_source
     from pymoo_gridpath.plotting import save_figures
     from pymoo_gridpath.problems import GridPathProblem
 
@@ -205,6 +206,8 @@ def _plan(arguments) -> int:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
     grid, known = _load(arguments.map or DEFAULT_MAP, arguments)
     start, goal = _query(arguments, grid, known)
+    # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
+    unknown, source = _unknown(grid), describe_source(grid)
     grid = _inflate(grid, arguments.radius, start, goal)
     problem = GridPathProblem(
         grid,
@@ -236,13 +239,15 @@ def _plan(arguments) -> int:
     _make_directory(arguments.output)
 
     print(f"{visible(grid.name)}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
+    if unknown is not None:
+        print(f"unknown: {unknown}", flush=True)
     with _StopOnCtrlC() as stop:
         results = _search(problem, algorithm, arguments, stop)
         stop.searching = False
         if not any(len(result.pop) for result in results):
             say(f"no path was found: {results[0].message}")
             return EXIT_NO_PATH
-        trade_off, files = _write_paths(results, arguments, name, stop.requested)
+        trade_off, files = _write_paths(results, arguments, name, source, stop.requested)
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
@@ -289,6 +294,7 @@ def _info(arguments) -> int:
         "resolution": f"{grid.resolution:g} m a cell",
         "origin": f"x {x:g} m, y {y:g} m, yaw {yaw:g} rad, the corner of cell 0,0",
         "occupied": f"{occupied} cells, {occupied / grid.occupied.size:.1%}",
+        **({} if (unknown := _unknown(grid)) is None else {"unknown": unknown}),
         "free regions": f"{len(sizes)}" + (f", the largest of {sizes.max()} cells" if len(sizes) else ""),
         "corners": "may be cut" if grid.corner_cutting else "may not be cut",
     }
@@ -309,6 +315,15 @@ def _load(name: str, arguments) -> tuple[OccupancyGrid, ShippedMap | TextHeader 
     if not Path(name).is_file():
         return grid, next((item for item in shipped_maps() if item.name == name), None)
     return grid, read_text_header(name) if map_format(name) == "a plain text map" else None
+
+
+def _unknown(grid: OccupancyGrid) -> str | None:
+    """Return in words how many cells of a map as read are unknown and what they count as; None if its kind knows none."""
+    if grid.unknown is None:
+        return None
+    n = int(grid.unknown.sum())
+    meaning = ("occupied" if grid.occupied[grid.unknown].all() else "free") if n else ""
+    return counted(n, "cell") + (f", {n / grid.unknown.size:.1%}, taken as {meaning}" if n else "")
 
 
 def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None):
@@ -371,17 +386,14 @@ def _found_legal(result) -> bool:
     return bool(np.any(np.asarray(result.pop.get("interfering_cells")) == 0))
 
 
-def _write_paths(results, arguments, name: str, interrupted: bool):
+def _write_paths(results, arguments, name: str, source: dict, interrupted: bool):
     """Return the trade-off set of the runs, and the files that it was written to."""
     from pymoo_gridpath.decision import TradeOffSet
-    from pymoo_gridpath.decision.provenance import grid_digest
 
-    source = _load(arguments.map or DEFAULT_MAP, arguments)[0]
     settings = {
         "algorithm": {"name": name},
         "robot_radius": arguments.radius,
-        # The map that was planned on is the one grown by the radius.
-        "source_map": {"occupied_cells": source.n_occupied, "sha256": grid_digest(source)},
+        "source_map": source,
         "interrupted": interrupted,
     }
     trade_off = TradeOffSet.from_results(results, settings=settings)

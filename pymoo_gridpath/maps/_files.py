@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import reprlib
+import warnings
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.errors import MapError, MapWarning
 from pymoo_gridpath.grid import OccupancyGrid
 
 MAX_CELLS = 100_000_000
@@ -31,13 +32,13 @@ def require_file(path: str | os.PathLike[str]) -> Path:
     raise MapError(path, f"{found}, expected a map file")
 
 
-def read_string(path: str | os.PathLike[str]) -> str:
-    """Return the text of a UTF-8 file, line ends as newlines, or raise MapError."""
+def read_string(path: str | os.PathLike[str], limit: int = 2 * MAX_CELLS) -> str:
+    """Return the text of a UTF-8 file of at most ``limit`` bytes, line ends as newlines, or raise MapError."""
     file = require_file(path)
     try:
         # A text map needs a byte a cell, a line end a row and a short header.
-        if file.stat().st_size > 2 * MAX_CELLS:
-            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {2 * MAX_CELLS} for a text file")
+        if file.stat().st_size > limit:
+            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {limit} for a file of this kind")
         data = file.read_bytes()
     except OSError as error:
         raise MapError(path, f"the file cannot be read ({error.strerror}), expected a readable map file") from None
@@ -47,6 +48,11 @@ def read_string(path: str | os.PathLike[str]) -> str:
         line = data.count(b"\n", 0, error.start) + 1
         raise MapError(path, f"found the byte 0x{data[error.start]:02x}, expected UTF-8 text", line) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def warn(path: str | os.PathLike[str], message: str) -> None:
+    """Warn the caller of a reader that a map may have been meant otherwise."""
+    warnings.warn(MapWarning(path, message), stacklevel=4)
 
 
 def shorten(value: object) -> str:
