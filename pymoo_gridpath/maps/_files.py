@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import reprlib
+import sys
 import warnings
 from pathlib import Path
 
@@ -32,13 +33,14 @@ def require_file(path: str | os.PathLike[str]) -> Path:
     raise MapError(path, f"{found}, expected a map file")
 
 
-def read_string(path: str | os.PathLike[str], limit: int = 2 * MAX_CELLS) -> str:
+def read_string(path: str | os.PathLike[str], limit: int | None = None) -> str:
     """Return the text of a UTF-8 file of at most ``limit`` bytes, line ends as newlines, or raise MapError."""
     file = require_file(path)
+    # A text map needs a byte a cell, a line end a row and a short header.
+    limit = 2 * MAX_CELLS if limit is None else limit
     try:
-        # A text map needs a byte a cell, a line end a row and a short header.
         if file.stat().st_size > limit:
-            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {limit} for a file of this kind")
+            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {limit} for a text file")
         data = file.read_bytes()
     except OSError as error:
         raise MapError(path, f"the file cannot be read ({error.strerror}), expected a readable map file") from None
@@ -51,8 +53,11 @@ def read_string(path: str | os.PathLike[str], limit: int = 2 * MAX_CELLS) -> str
 
 
 def warn(path: str | os.PathLike[str], message: str) -> None:
-    """Warn the caller of a reader that a map may have been meant otherwise."""
-    warnings.warn(MapWarning(path, message), stacklevel=4)
+    """Warn that a map may have been meant otherwise, at the line that called this package."""
+    level, frame = 2, sys._getframe(1)
+    while (outer := frame.f_back) is not None and frame.f_globals.get("__name__", "").startswith("pymoo_gridpath."):
+        level, frame = level + 1, outer
+    warnings.warn(MapWarning(path, message), stacklevel=level)
 
 
 def shorten(value: object) -> str:

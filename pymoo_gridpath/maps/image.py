@@ -56,9 +56,10 @@ class Pixels:
     def grey(self) -> np.ndarray:
         """Return the luminance of each pixel by Rec. 601, uint8, rounded as GraphicsMagick with 16 bits a value does."""
         to_16_bits = _WHITE_16 // self.white
-        grey = np.empty(self.channels.shape[:2], np.uint8)
-        n_rows = max(_BLOCK // grey.shape[1], 1)
-        for k in range(0, len(grey), n_rows):
+        height, width = self.channels.shape[:2]
+        grey = np.empty((height, width), np.uint8)
+        n_rows = max(_BLOCK // width, 1)
+        for k in range(0, height, n_rows):
             values = self.channels[k : k + n_rows].astype(np.uint32)
             if values.ndim == 3:
                 values = (values @ _LUMINANCE * to_16_bits + 500) // 1000
