@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import warnings
 from collections.abc import Sequence
 from numbers import Real
 
@@ -14,7 +15,7 @@ from scipy.sparse import csgraph
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
+from pymoo_gridpath.errors import GridError, GridPathError, GridPathWarning, UnreachableError
 
 Cell = tuple[int, int]
 
@@ -42,6 +43,9 @@ class OccupancyGrid:
         body: both cells beside the step must be free. True is the world of Ahmed and Deb (2013).
     name : str, default "grid"
         What figures and files call this grid.
+    unknown : array_like of bool, shape (height, width), optional
+        True where the map did not say whether a cell is free; ``occupied`` says what it was taken for. None, the default, where
+        maps of this kind know no unknown cells. Copied, and no part of what makes two grids equal.
 
     Raises
     ------
@@ -67,8 +71,12 @@ class OccupancyGrid:
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         corner_cutting: bool = False,
         name: str = "grid",
+        unknown: ArrayLike | None = None,
     ):
         self._occupied = _as_occupied(occupied)
+        self._unknown = None if unknown is None else _as_occupied(unknown)
+        if self._unknown is not None and self._unknown.shape != self.shape:
+            raise GridError(f"unknown has the shape {self._unknown.shape}, expected that of the grid, {self.shape}")
         self._resolution = checks.number(
             "resolution", resolution, 0.0, above=True, expected="a positive number of metres per cell", error=GridError
         )
@@ -84,6 +92,11 @@ class OccupancyGrid:
     def occupied(self) -> np.ndarray:
         """Occupied cells, bool, shape (height, width), read-only."""
         return self._occupied
+
+    @property
+    def unknown(self) -> np.ndarray | None:
+        """Cells of which the map did not say whether they are free, bool, shape (height, width), read-only; None as above."""
+        return self._unknown
 
     @property
     def resolution(self) -> float:
@@ -126,13 +139,17 @@ class OccupancyGrid:
         return int(self._occupied.sum())
 
     def replace(self, **changes) -> OccupancyGrid:
-        """Return a copy in which the named constructor arguments are changed."""
+        """Return a copy in which the named constructor arguments are changed.
+
+        Unknown cells are forgotten if ``occupied`` has another shape.
+        """
         arguments = {
             "occupied": self._occupied,
             "resolution": self._resolution,
             "origin": self._origin,
             "corner_cutting": self._corner_cutting,
             "name": self._name,
+            "unknown": self._unknown if np.shape(changes.get("occupied", self._occupied)) == self.shape else None,
         }
         unknown = set(changes) - set(arguments)
         if unknown:
@@ -152,7 +169,8 @@ class OccupancyGrid:
 
     def __reduce__(self):
         # Through the constructor, because pickling an array drops its read-only flag.
-        return OccupancyGrid, (self._occupied, self._resolution, self._origin, self._corner_cutting, self._name)
+        arguments = self._occupied, self._resolution, self._origin, self._corner_cutting, self._name, self._unknown
+        return OccupancyGrid, arguments
 
     def __repr__(self) -> str:
         rule = "may be cut" if self._corner_cutting else "may not be cut"
@@ -302,6 +320,11 @@ class OccupancyGrid:
         ------
         GridError
             If the radius is negative or not finite.
+
+        Warns
+        -----
+        GridPathWarning
+            If the radius is not zero but too small to have an effect: at most half a cell.
         """
         radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
         cells = radius / self._resolution
@@ -309,6 +332,13 @@ class OccupancyGrid:
         offset = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0) ** 2
         disc = np.sqrt(offset[:, None] + offset[None, :]) < cells - 1e-9
         if disc.sum() <= 1:
+            if radius > 0:
+                warnings.warn(
+                    f"the robot radius of {radius:g} m is at most half a cell of {self._name!r}, {self._resolution:g} m "
+                    "wide, so that no obstacle grows",
+                    GridPathWarning,
+                    stacklevel=2,
+                )
             return self
         # It takes as long to import as the rest of the package, and is used by this method alone.
         from scipy import signal

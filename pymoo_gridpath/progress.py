@@ -5,22 +5,49 @@ from __future__ import annotations
 import contextlib
 import sys
 import time
+import warnings
+from collections.abc import Iterator
 
 import numpy as np
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, visible
 
 #: What `say_that_it_compiles` says.
 COMPILING = "compiling the search for this machine, about 20 s the first time"
 
 
 def say_that_it_compiles() -> None:
-    """Say why nothing happens yet, on a line of its own on standard error that takes the place of a progress line."""
+    """Say why nothing happens yet."""
+    _line(COMPILING)
+
+
+def say(message: object) -> None:
+    """Say something about the work on standard error, in one line that names the program."""
+    _line(f"pymoo-gridpath: {visible(message)}")
+
+
+@contextlib.contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """While open, show warnings about what the user gave as one line each, in place of Python's two with a line of code."""
+
+    def show(message, category, filename, lineno, file=None, line=None):
+        if issubclass(category, UserWarning):
+            say(f"warning: {message}")
+        else:
+            shown(message, category, filename, lineno, file, line)
+
+    with warnings.catch_warnings():
+        shown, warnings.showwarning = warnings.showwarning, show
+        yield
+
+
+def _line(text: str) -> None:
+    """Write a line on standard error, in the place of a progress line if one is shown."""
     # Programs without a console have none, and whoever reads it may have gone.
     if sys.stderr is not None:
         with contextlib.suppress(OSError):
-            print(("\r\x1b[K" if sys.stderr.isatty() else "") + COMPILING, file=sys.stderr, flush=True)
+            print(("\r\x1b[K" if sys.stderr.isatty() else "") + text, file=sys.stderr, flush=True)
 
 
 class Progress:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pymoo_gridpath.errors import GridError, UnreachableError
+from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError
 from pymoo_gridpath.grid import OccupancyGrid
 
 
@@ -146,6 +146,7 @@ def test_shortest_lengths_and_regions_agree_with_a_plain_search(seed, corner_cut
             assert reached == ((x, y) in expected)
 
 
+@pytest.mark.filterwarnings("ignore:the robot radius")
 @given(st.integers(0, 10**6), st.floats(0, 4), st.sampled_from([0.5, 1.0, 2.0]))
 def test_inflation_occupies_what_a_disc_would_touch(seed, radius, resolution):
     grid = random_grid(seed, density=0.1).replace(resolution=resolution)
@@ -166,3 +167,27 @@ def test_inflation_occupies_what_a_disc_would_touch(seed, radius, resolution):
 def test_inflation_refuses_bad_radii(radius):
     with pytest.raises(GridError, match="robot radius"):
         random_grid(0).inflate(radius)
+
+
+@pytest.mark.parametrize(("radius", "grows"), [(0, True), (0.01, False), (0.25, False), (0.26, True)])
+def test_a_radius_without_effect_is_said(radius, grows, recwarn):
+    grid = OccupancyGrid([[0, 1, 0]], resolution=0.5, name="hall")
+    assert (grid.inflate(radius).n_occupied == 3) == (grows and radius > 0)
+    said = [str(item.message) for item in recwarn if item.category is GridPathWarning]
+    assert len(said) == (not grows)
+    assert all(f"{radius:g} m is at most half a cell of 'hall', 0.5 m wide" in text for text in said)
+
+
+def test_unknown_cells_stay_with_the_grid_and_make_no_other_grid():
+    unknown = np.array([[False, True, True], [False, False, False]])
+    grid = OccupancyGrid([[0, 1, 0], [0, 0, 0]], unknown=unknown)
+    plain = OccupancyGrid([[0, 1, 0], [0, 0, 0]])
+    unknown[:] = True
+    expected = [[False, True, True], [False, False, False]]
+    for copied in (grid, grid.inflate(1), grid.replace(name="b"), pickle.loads(pickle.dumps(grid)), copy.deepcopy(grid)):
+        assert copied.unknown.tolist() == expected and not copied.unknown.flags.writeable
+    assert plain.unknown is None and plain.inflate(1).unknown is None and pickle.loads(pickle.dumps(plain)).unknown is None
+    assert grid == plain and hash(grid) == hash(plain)
+    assert grid.replace(occupied=[[0, 1]]).unknown is None
+    with pytest.raises(GridError, match=r"unknown has the shape \(1, 2\), expected that of the grid, \(2, 3\)"):
+        grid.replace(unknown=[[0, 1]])

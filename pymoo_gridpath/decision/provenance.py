@@ -23,6 +23,15 @@ def grid_digest(grid: OccupancyGrid) -> str:
     return hashlib.sha256(f"{grid.width} {grid.height}\n".encode() + grid.occupied.tobytes()).hexdigest()
 
 
+def describe_source(grid: OccupancyGrid) -> dict:
+    """Return what tells a map as it was read from others; ``unknown_cells`` is None where its format knows none."""
+    return {
+        "occupied_cells": grid.n_occupied,
+        "unknown_cells": None if grid.unknown is None else int(grid.unknown.sum()),
+        "sha256": grid_digest(grid),
+    }
+
+
 def describe_problem(problem) -> dict:
     """Return ``map``, ``query`` and ``settings`` of a path problem as plain data."""
     grid, representation = problem.grid, problem.representation
