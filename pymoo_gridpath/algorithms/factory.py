@@ -27,6 +27,7 @@ from pymoo_gridpath.algorithms.differential import WholeNumberDE
 from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
 from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
+from pymoo_gridpath.algorithms.rvea import FiniteAPDSurvival
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
@@ -179,12 +180,18 @@ def build(
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
     if row.name == "OmniOptimizer" and "selection" not in given:
         settings["selection"] = NeighborTournament()
+    if row.name == "RVEA" and given.get("survival") is None:
+        settings["survival"] = FiniteAPDSurvival(settings["ref_dirs"], given.get("alpha", accepted["alpha"]))
     settings.setdefault("evaluator", ArrayEvaluator())
     termination = settings.pop("termination", None)
     algorithm = cls(**settings)
     if termination is not None:
         # Several constructors overwrite the one they are given.
         algorithm.termination = termination
+    if row.name in ("AGEMOEA", "AGEMOEA2"):
+        # Their constructors take none. The module needs numba, as they do.
+        age = importlib.import_module("pymoo_gridpath.algorithms.age")
+        algorithm.survival = age.FiniteAGEMOEASurvival() if row.name == "AGEMOEA" else age.FiniteAGEMOEA2Survival()
     if row.name == "CTAEA":
         # It fills its archive from the first population and never ends if duplicates are missing there.
         algorithm.initialization.eliminate_duplicates = NoDuplicateElimination()

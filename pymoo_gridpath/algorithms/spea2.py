@@ -63,6 +63,9 @@ class StrengthAndSmoothness(ArraySurvival):
 class ArraySPEA2Survival(ArraySurvival, SPEA2Survival):
     """The original SPEA2's environmental selection, pymoo's with the same survivors in the same order, and a fast truncation.
 
+    It departs from pymoo's only where an objective is constant: there pymoo divides by an empty range, the fitness of all is no
+    number, and the run keeps whom it should lose; here that objective has the range 1.
+
     Parameters
     ----------
     normalize : bool, default True
@@ -104,9 +107,9 @@ class ArraySPEA2Survival(ArraySurvival, SPEA2Survival):
         if self.norm is None:
             self.norm = HyperplaneNormalization(F.shape[1])
         self.norm.update(F)
-        # As in pymoo, distances are no numbers while the range is empty, and the order of the individuals decides.
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return (F - self.norm.ideal_point) / (self.norm.nadir_point - self.norm.ideal_point)
+        span = self.norm.nadir_point - self.norm.ideal_point
+        # Over an empty range pymoo's distances are no numbers, and the order of the individuals decides who survives.
+        return (F - self.norm.ideal_point) / np.where(span == 0, 1.0, span)
 
 
 class StrengthTournament(TournamentSelection):
