@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from typing import TypeVar
@@ -67,3 +68,49 @@ def on_compiling(tell: Callable[[], None]) -> Iterator[None]:
 
     with event.install_listener("numba:compile", First()):
         yield
+
+
+class WorkingClock:
+    """A clock that stands still while numba compiles, for what is to be timed without that.
+
+    Open it with ``with``, and call it for the seconds since an arbitrary moment.
+
+    Examples
+    --------
+    >>> with WorkingClock() as clock:
+    ...     begin = clock()
+    ...     clock() >= begin
+    True
+    """
+
+    def __init__(self):
+        # Compiling one function may compile others that it calls.
+        self._depth, self._since, self._compiling = 0, 0.0, 0.0
+        self._open = contextlib.ExitStack()
+
+    def __call__(self) -> float:
+        now = self._since if self._depth else time.perf_counter()
+        return now - self._compiling
+
+    def __enter__(self) -> WorkingClock:
+        if numba is not None:
+            from numba.core import event
+
+            clock = self
+
+            class Compiling(event.Listener):
+                def on_start(self, event):
+                    if clock._depth == 0:
+                        clock._since = time.perf_counter()
+                    clock._depth += 1
+
+                def on_end(self, event):
+                    clock._depth -= 1
+                    if clock._depth == 0:
+                        clock._compiling += time.perf_counter() - clock._since
+
+            self._open.enter_context(event.install_listener("numba:compile", Compiling()))
+        return self
+
+    def __exit__(self, *error) -> None:
+        self._open.close()

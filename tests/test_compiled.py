@@ -5,7 +5,7 @@ import importlib.util
 import pytest
 
 from pymoo_gridpath import compiled
-from pymoo_gridpath.compiled import on_compiling
+from pymoo_gridpath.compiled import WorkingClock, on_compiling
 
 SOURCE = """
 from pymoo_gridpath.compiled import kernel
@@ -62,3 +62,36 @@ def test_compiling_that_cannot_be_kept_is_told_of_each_time(kernels, monkeypatch
 def test_nothing_is_told_of_without_numba(kernels, monkeypatch):
     monkeypatch.setattr(compiled, "numba", None)
     assert times_told(kernels) == 0
+
+
+def test_the_working_clock_stands_still_while_numba_compiles(monkeypatch):
+    event = pytest.importorskip("numba").core.event
+    now = [0.0]
+    monkeypatch.setattr(compiled.time, "perf_counter", lambda: now[0])
+    with WorkingClock() as clock:
+        now[0] = 5.0
+        assert clock() == 5.0
+        event.start_event("numba:compile")
+        now[0] = 15.0
+        event.start_event("numba:compile")  # of a function that the first one calls
+        now[0] = 300.0
+        event.end_event("numba:compile")
+        assert clock() == 5.0
+        event.end_event("numba:compile")
+        now[0] = 302.0
+        assert clock() == 7.0
+        event.start_event("numba:compile")
+        now[0] = 400.0
+        event.end_event("numba:compile")
+        assert clock() == 7.0
+    now[0] = 401.0
+    assert clock() == 8.0
+
+
+def test_the_working_clock_is_a_clock_without_numba(monkeypatch):
+    now = [1.0]
+    monkeypatch.setattr(compiled, "numba", None)
+    monkeypatch.setattr(compiled.time, "perf_counter", lambda: now[0])
+    with WorkingClock() as clock:
+        now[0] = 3.5
+        assert clock() == 3.5

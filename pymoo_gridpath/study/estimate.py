@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pymoo_gridpath.compiled import WorkingClock
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
 from pymoo_gridpath.study.plan import Plan, PlannedRun, Task, is_exact
@@ -40,13 +40,16 @@ class Estimate:
 def estimate(plan: Plan, runs: Iterable[PlannedRun] | None = None, max_seconds: float = 20.0) -> Estimate:
     """Return the time that runs will take, extrapolated from a few generations of one run of each kind.
 
+    Compiling does not count, neither here nor in what is returned: it is done once in a process, and some algorithms, such as
+    AGE-MOEA, compile functions as late as in their second generation.
+
     Parameters
     ----------
     plan : Plan
     runs : iterable of PlannedRun, optional
         All of the plan by default.
     max_seconds : float, default 20
-        About how long measuring may take; a generation that has begun is ended.
+        About how long measuring may take, without compiling; a generation that has begun is ended.
 
     Raises
     ------
@@ -56,31 +59,32 @@ def estimate(plan: Plan, runs: Iterable[PlannedRun] | None = None, max_seconds: 
     kinds: dict[tuple[str, int | None], list[PlannedRun]] = {}
     for run in plan.runs if runs is None else runs:
         kinds.setdefault((plan.problems[run.problem].group, run.algorithm), []).append(run)
-    end = time.monotonic() + max_seconds
     seconds: list[float] = []
     counts: list[int] = []
     open_ended = False
     warm: set[int | None] = set()
-    for k, ((_, algorithm), members) in enumerate(kinds.items()):
-        left = end - time.monotonic()
-        if left <= 0 and seconds:
-            break
-        task = plan.task(members[0])
-        share = max(left / (len(kinds) - k), _LEAST_SLICE)
-        try:
-            if algorithm not in warm:
-                # Compiled functions are loaded and memories filled once in a process, not once a run.
-                _measure(task, 0.0)
-                warm.add(algorithm)
-            found, is_open = _measure(task, share)
-        except Exception as error:
-            label = "the exact front" if algorithm is None else repr(plan.algorithms[algorithm].label)
-            raise GridPathError(
-                f"{label} fails on the problem {plan.problems[members[0].problem].label!r}: {type(error).__name__}: {error}"
-            ) from error
-        seconds.append(found)
-        counts.append(len(members))
-        open_ended |= is_open
+    with WorkingClock() as clock:
+        end = clock() + max_seconds
+        for k, ((_, algorithm), members) in enumerate(kinds.items()):
+            left = end - clock()
+            if left <= 0 and seconds:
+                break
+            task = plan.task(members[0])
+            share = max(left / (len(kinds) - k), _LEAST_SLICE)
+            try:
+                if algorithm not in warm:
+                    # Compiled functions are loaded and memories filled once in a process, not once a run.
+                    _measure(task, 0.0, clock)
+                    warm.add(algorithm)
+                found, is_open = _measure(task, share, clock)
+            except Exception as error:
+                label = "the exact front" if algorithm is None else repr(plan.algorithms[algorithm].label)
+                raise GridPathError(
+                    f"{label} fails on the problem {plan.problems[members[0].problem].label!r}: {type(error).__name__}: {error}"
+                ) from error
+            seconds.append(found)
+            counts.append(len(members))
+            open_ended |= is_open
     if not seconds:
         return Estimate(0.0, 0, 0)
     mean = sum(s * n for s, n in zip(seconds, counts, strict=True)) / sum(counts)
@@ -88,12 +92,12 @@ def estimate(plan: Plan, runs: Iterable[PlannedRun] | None = None, max_seconds: 
     return Estimate(mean * (sum(counts) + others), len(seconds), len(kinds), open_ended)
 
 
-def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
+def _measure(task: Task, max_seconds: float, clock: WorkingClock) -> tuple[float, bool]:
     """Return the seconds that a run will take, and whether that is but a bound for an exact front."""
-    begin = time.perf_counter()
+    begin = clock()
     problem = build_problem(task.problem, task.grid)
     if is_exact(task.algorithm):
-        return _measure_exact(task.algorithm, problem, max_seconds)
+        return _measure_exact(task.algorithm, problem, max_seconds, clock)
     assert task.budget is not None
     algorithm: Any = build_algorithm(task.algorithm, problem)
     algorithm.setup(problem, termination=build_termination(task.budget, algorithm), seed=task.seed)
@@ -102,7 +106,7 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     while algorithm.has_next() and (not records or records[-1][0] < max_seconds):
         algorithm.next()
         done = algorithm.evaluator.n_eval if "evaluations" in task.budget else len(records) + 1
-        records.append((time.perf_counter() - begin, done))
+        records.append((clock() - begin, done))
     (first, first_done), (last, last_done) = records[0], records[-1]
     if not algorithm.has_next():
         return last, False
@@ -111,12 +115,12 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     return last + rate * max(wanted - last_done, 0), False
 
 
-def _measure_exact(algorithm: Mapping[str, Any], problem, max_seconds: float) -> tuple[float, bool]:
-    begin = time.perf_counter()
+def _measure_exact(algorithm: Mapping[str, Any], problem, max_seconds: float, clock: WorkingClock) -> tuple[float, bool]:
+    begin = clock()
     own = algorithm["max_seconds"]
     search: Any = build_algorithm({**algorithm, "max_seconds": max_seconds if own is None else min(own, max_seconds)}, problem)
     search.setup(problem)
     search.next()
-    took = time.perf_counter() - begin
+    took = clock() - begin
     ended = search.found.complete or algorithm["max_labels"] is not None
     return (took, False) if ended else (max(took, own or 0.0), True)
