@@ -54,6 +54,13 @@ def seconds_compiling() -> float:
     return 0.0 if _compiling is None else _compiling.seconds
 
 
+def working_seconds() -> float:
+    """Return the time of a clock that stands still while numba compiles, for what is to be timed without that."""
+    if _compiling is not None and _compiling.depth > 0:
+        return _compiling.begin - _compiling.seconds
+    return time.perf_counter() - seconds_compiling()
+
+
 def _listen():
     """Return what numba tells when it begins and ends to compile, and have it say so the first time that it is a kernel."""
     # numba has imported it already.
@@ -62,13 +69,14 @@ def _listen():
     class Compiling(event.Listener):
         told = False
         seconds = 0.0
-        _depth = 0
+        depth = 0
+        begin = 0.0
 
         def on_start(self, event):
             # A kernel that calls others has them compiled while it is. All of it is done under one lock.
-            if self._depth == 0:
-                self._begin = time.perf_counter()
-            self._depth += 1
+            if self.depth == 0:
+                self.begin = time.perf_counter()
+            self.depth += 1
             if not self.told and event.data["dispatcher"].py_func in _kernels:
                 self.told = True
                 # Workers, whoever started them, leave it to the process that they work for.
@@ -76,9 +84,9 @@ def _listen():
                     say_that_it_compiles()
 
         def on_end(self, event):
-            self._depth -= 1
-            if self._depth == 0:
-                self.seconds += time.perf_counter() - self._begin
+            self.depth -= 1
+            if self.depth == 0:
+                self.seconds += time.perf_counter() - self.begin
 
     listener = Compiling()
     event.register("numba:compile", listener)

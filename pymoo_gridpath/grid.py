@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import warnings
@@ -191,10 +192,22 @@ class OccupancyGrid:
         x, y = _as_cell("cell", cell)
         return self.contains((x, y)) and not self._occupied[y, x]
 
-    def nearest_free(self, cell: Sequence[int]) -> Cell | None:
-        """Return the free cell nearest to ``cell`` (Euclidean; ties: lower y, then lower x), or None if all are occupied."""
-        cell = _as_cell("cell", cell)
-        ys, xs = np.nonzero(~self._occupied)
+    def nearest_free(self, cell: Sequence[int], joined_with: Sequence[int] | None = None) -> Cell | None:
+        """Return the free cell nearest to ``cell`` (Euclidean; ties: lower y, then lower x), or None if all are occupied.
+
+        Parameters
+        ----------
+        cell : sequence of two ints
+            The cell (x, y), on the grid or off it.
+        joined_with : sequence of two ints, optional
+            A free cell; only others that a path joins with it count, and None says that there are none.
+        """
+        cell, wanted = _as_cell("cell", cell), ~self._occupied
+        if joined_with is not None:
+            x, y = self.check_cell(joined_with, "joined_with")
+            wanted = self.regions == self.regions[y, x]
+            wanted[y, x] = False
+        ys, xs = np.nonzero(wanted)
         if len(xs) == 0:
             return None
         # Squares of larger numbers would overflow.
@@ -203,7 +216,7 @@ class OccupancyGrid:
         k = int(np.argmin((xs - x) ** 2 + (ys - y) ** 2))
         return int(xs[k]), int(ys[k])
 
-    def check_cell(self, cell: Sequence[int], role: str = "cell") -> Cell:
+    def check_cell(self, cell: Sequence[int], role: str = "cell", other: Sequence[int] | None = None) -> Cell:
         """Return ``cell`` as a pair of ints if it is a free cell of this grid.
 
         Parameters
@@ -212,24 +225,40 @@ class OccupancyGrid:
             The cell (x, y).
         role : str
             What the error message calls it, for instance ``"start"``.
+        other : sequence of two ints, optional
+            The other end of the path that is wanted, a free cell or not.
 
         Raises
         ------
         GridError
             If it is not a pair of whole numbers, lies outside the grid or is occupied; the message names the nearest free
-            cell.
+            cell, and if the other end is one, the nearest that a path joins with it.
         """
         x, y = _as_cell(checks.text("role", role, GridError), cell)
         if self.is_free((x, y)):
             return x, y
-        near = self.nearest_free((x, y))
-        hint = "the grid has no free cell" if near is None else f"the nearest free cell is ({near[0]}, {near[1]})"
+        hint = self._hint((x, y), other)
         if not self.contains((x, y)):
             raise GridError(
                 f"{role} {shown((x, y))} lies outside the grid {shown(self.name)} of {self.width} x {self.height} cells "
                 f"(x from 0 to {self.width - 1}, y from 0 to {self.height - 1}, y up); {hint}"
             )
         raise GridError(f"{role} ({x}, {y}) lies on an obstacle of the grid {shown(self.name)}; {hint}")
+
+    def _hint(self, cell: Cell, other: Sequence[int] | None) -> str:
+        """Return the part of a message that names a cell to take instead."""
+        end = None
+        if other is not None:
+            # If the other end is no better, it tells nothing.
+            with contextlib.suppress(GridError):
+                end = self.check_cell(other)
+        near = self.nearest_free(cell, end)
+        if end is None:
+            return "the grid has no free cell" if near is None else f"the nearest free cell is ({near[0]}, {near[1]})"
+        joined = f"that a path joins with ({end[0]}, {end[1]})"
+        return (
+            f"there is no free cell {joined}" if near is None else f"the nearest free cell {joined} is ({near[0]}, {near[1]})"
+        )
 
     def check_query(self, start: Sequence[int], goal: Sequence[int]) -> tuple[Cell, Cell]:
         """Return ``start`` and ``goal`` as pairs of ints if a path can lead from one to the other.
@@ -241,7 +270,7 @@ class OccupancyGrid:
         UnreachableError
             If no path joins them under the corner rule of the grid.
         """
-        start, goal = self.check_cell(start, "start"), self.check_cell(goal, "goal")
+        start, goal = self.check_cell(start, "start", goal), self.check_cell(goal, "goal", start)
         if start == goal:
             raise GridError(f"start and goal are the same cell ({start[0]}, {start[1]}), expected two different cells")
         region = self.regions

@@ -4,10 +4,12 @@ import importlib.util
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 
 from pymoo_gridpath import compiled
+from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.progress import COMPILING
 
@@ -129,3 +131,32 @@ def test_compiling_does_not_count_as_time_of_a_search(kernels, monkeypatch):
     assert meter.elapsed < 0 and not meter.stop()
     monkeypatch.setattr(compiled._compiling, "seconds", compiled.seconds_compiling() - 2000.0)
     assert meter.elapsed > 900 and meter.stop()
+
+
+def test_the_working_clock_stands_still_while_numba_compiles(monkeypatch):
+    event = pytest.importorskip("numba").core.event
+    data = {"dispatcher": SimpleNamespace(py_func=None)}
+    now = [0.0]
+    monkeypatch.setattr(compiled.time, "perf_counter", lambda: now[0])
+    begin = working_seconds()
+    now[0] = 5.0
+    assert working_seconds() - begin == 5.0
+    event.start_event("numba:compile", data)
+    now[0] = 15.0
+    event.start_event("numba:compile", data)  # of a function that the first one calls
+    now[0] = 300.0
+    event.end_event("numba:compile", data)
+    assert working_seconds() - begin == pytest.approx(5.0)
+    event.end_event("numba:compile", data)
+    now[0] = 302.0
+    assert working_seconds() - begin == pytest.approx(7.0)
+    event.start_event("numba:compile", data)
+    now[0] = 400.0
+    event.end_event("numba:compile", data)
+    assert working_seconds() - begin == pytest.approx(7.0)
+
+
+def test_the_working_clock_is_a_clock_without_numba(monkeypatch):
+    monkeypatch.setattr(compiled, "_compiling", None)
+    monkeypatch.setattr(compiled.time, "perf_counter", lambda: 3.5)
+    assert working_seconds() == 3.5

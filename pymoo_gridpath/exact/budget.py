@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from pathlib import Path
 import psutil
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.compiled import seconds_compiling
+from pymoo_gridpath.compiled import working_seconds
 
 # Share of the free memory that a search may take by default; the rest is for its end, and for others.
 _SHARE = 0.7
@@ -77,10 +76,6 @@ class Budget:
         checks.function("watch", self.watch, "a function of one argument, the Meter", optional=True)
 
 
-def _now() -> float:
-    return time.perf_counter() - seconds_compiling()
-
-
 class Meter:
     """Watch over a budget.
 
@@ -99,7 +94,7 @@ class Meter:
     """
 
     def __init__(self, budget: Budget):
-        self.begin = _now()
+        self.begin = working_seconds()
         self.seconds = math.inf if budget.max_seconds is None else budget.max_seconds
         self.labels = _MOST_LABELS if budget.max_labels is None else min(budget.max_labels, _MOST_LABELS)
         self.memory = _SHARE * free_memory() if budget.max_memory is None else min(budget.max_memory, _MOST_MEMORY)
@@ -111,7 +106,7 @@ class Meter:
     @property
     def elapsed(self) -> float:
         """Seconds since the search began, without those of compiling."""
-        return _now() - self.begin
+        return working_seconds() - self.begin
 
     def pops(self, n_labels: int, at_most: int) -> int:
         """Return how many labels may be popped before the next check; each opens up to eight others."""

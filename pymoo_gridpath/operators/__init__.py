@@ -55,7 +55,10 @@ __all__ = [
 def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 20.0) -> dict:
     """Return the operators that the paper names for the problem's representation.
 
-    They fit any pymoo algorithm that takes operators: ``NSGA2(pop_size=100, **paper_operators(problem))``.
+    pymoo's own constructors take them as they are where the capability table says "Unpacks":
+    ``NSGA2(pop_size=100, **paper_operators(problem))``. Others, such as MOEA/D, refuse one of them or heed it not;
+    ``make_algorithm("MOEA/D", problem, operators=paper_operators(problem))`` fits them to every algorithm that takes a crossover and
+    a mutation.
 
     Parameters
     ----------
@@ -106,7 +109,10 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
 def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalarized") -> dict:
     """Return operators that know paths: whatever they make is a legal path, in any representation.
 
-    They fit any pymoo algorithm that takes operators: ``NSGA2(pop_size=100, **path_operators(problem))``.
+    pymoo's own constructors take them as they are where the capability table says "Unpacks":
+    ``NSGA2(pop_size=100, **path_operators(problem))``. Others, such as MOEA/D, refuse one of them or heed it not;
+    ``make_algorithm("MOEA/D", problem, operators=path_operators(problem))`` fits them to every algorithm that takes a crossover and
+    a mutation.
 
     Parameters
     ----------
@@ -139,6 +145,8 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
 
 def default_operators(problem) -> dict:
     """Return `paper_operators` for the paper's representations, and `path_operators` for any other, such as "cells".
+
+    See either for which of pymoo's algorithms take them as they are.
 
     Parameters
     ----------

@@ -96,7 +96,7 @@ def _check(arguments) -> int:
     due = plan.runs
     folder = _results(arguments)
     if folder.is_dir():
-        found = Store(folder).check(run.key for run in plan.runs)
+        found = Store(folder).check([run.key for run in plan.runs])
         missing = set(found.missing)
         due = tuple(run for run in plan.runs if run.key in missing)
         failed = f", {len(found.failed):,} of them failed" if found.failed else ""

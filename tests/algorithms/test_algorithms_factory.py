@@ -71,7 +71,7 @@ def test_unknown_name(name, near, make_problem):
         ("GA", {}, "GA takes one objective, the problem has 2"),
         ("NSGA2", {"smoothness": "yes"}, "smoothness is 'yes', expected True, False or None"),
         ("NSGA2", {"operators": 5}, "operators is 5, expected a mapping such as path_operators returns"),
-        ("MOEAD", {"n_neighbors": -3}, "n_neighbors is -3, expected a whole number of at least 1"),
+        ("MOEAD", {"n_neighbors": -3}, "n_neighbors is -3, expected a whole number of at least 2"),
         ("MOEAD", {"n_replace": 2.5}, "n_replace is 2.5, expected a whole number of at least 1"),
         ("MOEAD", {"batch_size": 0}, "batch_size is 0, expected a whole number of at least 1"),
         (None, {}, "there is no algorithm None; expected one of"),

@@ -265,7 +265,7 @@ def test_arguments_out_of_range_are_refused():
         (lambda: PathMutation(max_expansions=0), "max_expansions is 0"),
         (lambda: ReachableSampling(roughness=9), "roughness is 9"),
         (lambda: ScalarizedSampling(noise=None), "noise is None, expected a number from 0 to 4"),
-        (lambda: SpliceCrossover(reach="a"), "reach is 'a', expected a number from 0 to 64"),
+        (lambda: SpliceCrossover(reach="a"), "reach is 'a', expected a whole number from 0 to 64"),
         (lambda: SpliceCrossover(reach=2.5), "reach is 2.5, expected a whole number"),
         (lambda: PathMutation(ways="shift"), "ways is 'shift', expected a mapping"),
         (lambda: PathMutation(ways={"shift": "a"}), "shift is 'a', expected a number"),
