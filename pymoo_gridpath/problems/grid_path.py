@@ -131,10 +131,10 @@ class GridPathProblem(Problem):
         self.grid = check_grid(grid)
         self.start, self.goal = grid.check_query(start, goal)
         self.objectives = make_objectives(objectives)
+        checks.one_of("obstacles", obstacles, OBSTACLES)
         if obstacles == "constraint" and penalty is not None:
             raise GridPathError("penalty is for obstacles='penalty' and 'limit', not for obstacles='constraint'")
         self.obstacles = obstacles
-        checks.one_of("obstacles", obstacles, OBSTACLES)
         given = self._default_penalty() if penalty is None else penalty
         self.penalty = checks.number("penalty", given, 0.0, above=True, expected="a positive number")
         self.potential_limit = self._check_limit(potential_limit)

@@ -96,7 +96,7 @@ class Store:
         DamagedRecordError
             If its file is not what was written.
         """
-        record = from_bytes(self._read(key), genes)
+        record = from_bytes(self._read(key), checks.flag("genes", genes))
         if record.key != key:
             raise DamagedRecordError(f"the file of run {key} holds the run {record.key}")
         return record

@@ -6,6 +6,8 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import StudyError, nearest
 
@@ -74,10 +76,10 @@ def flag(value: object, where: Where) -> bool:
 def choice(value: object, known: Iterable[str], where: Where) -> str:
     """Return one of some names."""
     known = list(known)
-    if value not in known:
+    if not isinstance(value, str) or value not in known:
         hint = nearest(value, known) if isinstance(value, str) else f"expected one of {', '.join(known)}"
         raise StudyError(f"{key_of(where)} is {show(value)}; {hint}", where)
-    return str(value)
+    return value
 
 
 def whole(value: object, where: Where, least: int = 0, most: int | None = None) -> int:
@@ -95,7 +97,7 @@ def real(value: object, where: Where, least: float = 0.0, most: float | None = N
     within = f"above {least:g}" if open_below else f"{least:g} or more"
     if most is not None:
         within = f"above {least:g}, at most {most:g}" if open_below else f"{least:g} to {most:g}"
-    fits = isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number)
+    fits = isinstance(number, int | float) and not isinstance(number, bool) and _is_finite(number)
     if not fits or number < least or (open_below and number == least) or (most is not None and number > most):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected a number, {within}", where)
     return float(number)
@@ -104,13 +106,15 @@ def real(value: object, where: Where, least: float = 0.0, most: float | None = N
 def number(value: object, where: Where) -> int | float:
     """Return a finite number."""
     found = _plain(value)
-    if not isinstance(found, int | float) or isinstance(found, bool) or not math.isfinite(found):
+    if not isinstance(found, int | float) or isinstance(found, bool) or not _is_finite(found):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected a number", where)
     return found
 
 
 def cell(value: object, where: Where) -> tuple[int, int]:
     """Return a cell (x, y)."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
     if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 2:
         raise StudyError(f"{key_of(where)} is {show(value)}, expected a cell of two whole numbers, such as [12, 40]", where)
     x, y = (_plain(part) for part in value)
@@ -171,6 +175,14 @@ def plain_json(value: object, where: Where) -> Any:
 def like(default: object, value: Any) -> Any:
     """Return a number as the kind of number that the default is, so that 4 and 4.0 are the same."""
     return float(value) if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _is_finite(number: float) -> bool:
+    """Whether a number is neither infinite nor NaN, nor a whole number beyond what floats hold."""
+    try:
+        return math.isfinite(number)
+    except OverflowError:
+        return False
 
 
 def _plain(value: object) -> Any:
