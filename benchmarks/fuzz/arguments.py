@@ -85,6 +85,12 @@ def _calls() -> dict:
     return _CALLS[os.getpid()]
 
 
+def known_names() -> list[str]:
+    """Return the public names that are called."""
+    with tempfile.TemporaryDirectory(prefix="fuzz-arguments-") as folder, _quiet():
+        return sorted(calls(World(Path(folder))))
+
+
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):

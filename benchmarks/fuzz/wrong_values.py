@@ -144,7 +144,7 @@ PLAIN: dict[str, Callable[[], Any]] = {
     "complex array": lambda: np.ones((2, 2), dtype=complex),
     "array of 4 dimensions": lambda: np.zeros((1, 2, 3, 4)),
     "large array": lambda: np.zeros(10**6),
-    "matrix": lambda: np.asmatrix([[1.0, 2.0], [3.0, 4.0]]),
+    "matrix": lambda: np.array([[1.0, 2.0], [3.0, 4.0]]).view(np.matrix),
 }
 
 #: Each spoils a valid array.
