@@ -1,4 +1,4 @@
-"""What arguments must be: each check returns the value to work with, or says in a sentence what was given and what was expected.
+"""What arguments must be: a check returns the value to work with, or says in a sentence what was given and what was expected.
 
 Numbers may be Python's or numpy's, or arrays without dimensions. Truth values are no numbers here, and masked values are none
 either: what they hide would be taken for real.
@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from pymoo_gridpath.errors import GridPathError, nearest
+from pymoo_gridpath.errors import GridPathError, nearest, visible
 
 T = TypeVar("T")
 
@@ -67,13 +67,8 @@ def shown(value: Any) -> str:
         text = _BRIEF.repr(value)
     except Exception:
         text = f"an object of the class {type(value).__name__}"
-    return printable(text, 2 * _MOST_SHOWN)
-
-
-def printable(text: object, most: int = 300) -> str:
-    """Return a text, such as a path, on one line: what cannot be printed escaped, and the middle left out if it is too long."""
-    line = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in str(text))
-    return line if len(line) <= most else f"{line[: most // 2]}...{line[-most // 2 :]}"
+    text = visible(text)
+    return text if len(text) <= 2 * _MOST_SHOWN else f"{text[:_MOST_SHOWN]}...{text[-_MOST_SHOWN:]}"
 
 
 def _scalar(value: Any) -> Any:
@@ -145,11 +140,11 @@ def whole(
     raise error(f"{name} is {shown(value)}, expected {expected}")
 
 
-def flag(name: str, value: Any, error: type[GridPathError] = GridPathError) -> bool:
+def flag(name: str, value: Any, error: type[GridPathError] = GridPathError, *, expected: str = "True or False") -> bool:
     """Return a truth value."""
     given = _scalar(value)
     if not isinstance(given, bool | np.bool_):
-        raise error(f"{name} is {shown(value)}, expected True or False")
+        raise error(f"{name} is {shown(value)}, expected {expected}")
     return bool(given)
 
 

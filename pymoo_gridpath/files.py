@@ -9,7 +9,7 @@ import uuid
 from pathlib import Path
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, visible
 
 #: Names of files that were being written when a process was killed.
 UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}\.part")
@@ -27,7 +27,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> Path:
     try:
         replace_file(path, data)
     except OSError as error:
-        shown = checks.printable(path)
+        shown = visible(path)
         raise GridPathError(f"{shown}: the file cannot be written ({error.strerror}), expected a writable place") from None
     return path
 

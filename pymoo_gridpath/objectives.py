@@ -19,8 +19,8 @@ class Objective(ABC):
     """A quantity of a path to be minimised.
 
     Subclass it to add one of your own: set `name` and `label`, and compute from the paths, or from the sum of a field over the
-    visited cells if `field` returns one. A field is nowhere negative, and whole numbers, truth values and short floats in it count
-    as floats; objectives that have one have an exact front.
+    visited cells if `field` returns one. A field is nowhere negative, and whole numbers, truth values and short
+    floats in it count as floats; objectives that have one have an exact front.
 
     Attributes
     ----------

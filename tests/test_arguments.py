@@ -77,7 +77,7 @@ def test_values_are_shown_short_and_on_one_line(value, text):
 
 
 def test_long_values_are_cut():
-    for value in ("x" * 10**6, b"\xff" * 10**6, [["y" * 10**5]] * 50, {k: "z" * 10**5 for k in range(50)}):
+    for value in ("x" * 10**6, b"\xff" * 10**6, [["y" * 10**5]] * 50, dict.fromkeys(range(50), "z" * 10**5)):
         assert len(checks.shown(value)) < 200
 
 
@@ -154,7 +154,7 @@ def test_costs_of_any_type_give_what_floats_give(representation, kind):
     def front(field, **options):
         problem = GridPathProblem(GRID, **QUERY, representation=representation, objectives=[Own(field)], **options)
         operators = path_operators(problem)
-        result = minimize(problem, NSGA2(pop_size=10, **operators), ("n_gen", 4), seed=1)
+        result = minimize(problem, NSGA2(pop_size=6, **operators), ("n_gen", 2), seed=1)
         X = np.random.default_rng(1).integers(problem.xl, problem.xu + 1, (20, problem.n_var))
         return problem.pareto_front(), result.F, problem.evaluate(X, return_values_of=["F"])
 
@@ -196,7 +196,7 @@ def test_a_grid_of_another_class_is_refused_wherever_one_is_taken(wrong):
     takers += [lambda grid, f=f: f(grid, (0, 0), (2, 2)) for f in (GridPathProblem, MonotoneFrame, ahmed_deb_2013)]
     takers += [lambda grid, f=f: f(grid, (0, 0), (2, 2)) for f in REPRESENTATIONS.values()]
     for take in takers:
-        with pytest.raises(GridPathError, match="^grid is .*, expected an OccupancyGrid; load_map reads one$"):
+        with pytest.raises(GridPathError, match=r"^grid is .*, expected an OccupancyGrid; load_map reads one$"):
             take(wrong)
 
 
@@ -399,7 +399,6 @@ def fuzzer():
     try:
         import arguments
         import harness
-
         from calls import public_names
 
         yield arguments, harness, public_names

@@ -1,9 +1,9 @@
 """Wrong values for every argument of every public name, and valid ones in another guise.
 
-A wrong value must lead to a result, or to a GridPathError, TypeError or ValueError that says in one sentence what was wrong. The
-sentence must be ours: an error that Python, numpy or another package raised while it worked on what nobody had checked is a fault,
-but for arguments that a signature does not know. Refusals take at most 2 s of processor time. A valid array in another guise, such as
-a transposed or a read-only view, must give what the plain one gives. No call may change its arguments.
+A wrong value must lead to a result, or to a GridPathError, TypeError or ValueError that says in one sentence what was wrong.
+The sentence must be ours: an error that Python, numpy or another package raised while it worked on what nobody had checked is
+a fault, but for arguments that a signature does not know. Refusals take at most 2 s of processor time. A valid array in
+another guise, such as a transposed or a read-only view, must give what the plain one gives. No call may change its arguments.
 
     python benchmarks/fuzz/arguments.py --count 10000
 """
@@ -167,7 +167,7 @@ def _frozen(value: Any) -> Any:
 
 
 def _is_ours(error: BaseException) -> bool:
-    """Return whether an error was raised in words by this package, or by Python for arguments that a signature does not know."""
+    """Return whether this package raised an error in words, or Python for arguments that a signature does not know."""
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
@@ -182,7 +182,7 @@ def _is_ours(error: BaseException) -> bool:
 
 
 def same(one: Any, other: Any, depth: int = 4) -> bool:
-    """Return whether two results agree, as far as they are data: numbers, texts, arrays, collections, objects of the package."""
+    """Return whether two results agree, as far as they are numbers, texts, arrays, collections, or objects of the package."""
     if depth == 0 or one is other:
         return True
     if isinstance(one, np.ndarray | np.generic) or isinstance(other, np.ndarray | np.generic):
@@ -237,7 +237,7 @@ def _planted() -> dict[str, Callable[[], contextlib.AbstractContextManager]]:
         "whole numbers are not looked at": lambda: mock.patch.object(checks, "whole", lambda name, value, *_, **__: int(value)),
         "arrays are not looked at": lambda: mock.patch.object(checks, "array", lambda name, value, *_, **__: np.asarray(value)),
         "values are shown whole": lambda: mock.patch.object(checks._Brief, "repr_instance", lambda self, x, level: repr(x)),
-        "control characters are shown raw": lambda: mock.patch.object(checks, "printable", lambda text, most=0: str(text)),
+        "control characters are shown raw": lambda: mock.patch.object(checks, "visible", str),
         "genes are read in the order of memory": lambda: mock.patch.object(base.Representation, "genes", loses_order),
         "a field is changed in place": lambda: mock.patch.object(cell_sequence, "check_field", writes_back),
         "the knee takes for ever": lambda: mock.patch.object(decision, "knee_point", endless),

@@ -303,8 +303,8 @@ def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, 
 
 
 def _smoothness(row: Capability, problem, smoothness: bool | None, given: Mapping[str, Any]) -> dict[str, Any]:
-    if smoothness is not None and not isinstance(smoothness, bool | np.bool_):
-        raise CapabilityError(f"smoothness is {checks.shown(smoothness)}, expected True, False or None")
+    if smoothness is not None:
+        smoothness = checks.flag("smoothness", smoothness, CapabilityError, expected="True, False or None")
     own = [key for key in ("selection", "survival") if key in given]
     if smoothness and not row.smoothness:
         able = ", ".join(other.name for other in CAPABILITIES.values() if other.smoothness)

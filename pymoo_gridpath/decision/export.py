@@ -13,7 +13,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.provenance import plain
-from pymoo_gridpath.errors import GridPathError, counted
+from pymoo_gridpath.errors import GridPathError, counted, visible
 
 FORMAT = "pymoo_gridpath trade-off set"
 FORMAT_VERSION = 1
@@ -73,7 +73,7 @@ def load_json(path: str | os.PathLike[str]) -> dict:
         If the file cannot be read or is no trade-off set of this format.
     """
     checks.file_path("path", path)
-    shown = checks.printable(path)
+    shown = visible(path)
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:

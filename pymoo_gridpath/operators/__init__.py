@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.crossover import (
     DiscreteSBX,
@@ -131,8 +132,7 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
     GridPathError
         If the sampling is unknown, or the problem has no path representation.
     """
-    if sampling not in ("scalarized", "random"):
-        raise GridPathError(f"sampling is {sampling!r}, expected 'scalarized' or 'random'")
+    checks.one_of("sampling", sampling, ("scalarized", "random"))
     terrain_of(problem)
     return {
         "sampling": ScalarizedSampling() if sampling == "scalarized" else ReachableSampling(),

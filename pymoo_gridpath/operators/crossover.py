@@ -9,7 +9,16 @@ from pymoo.core.crossover import Crossover
 from pymoo.core.variable import Real
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.operators.parameters import check_whole_rows, in_range, number, one_or_two, whole
+from pymoo_gridpath.operators.parameters import (
+    bounds_of,
+    check_whole_rows,
+    generator,
+    in_range,
+    number,
+    one_or_two,
+    pairs,
+    whole,
+)
 from pymoo_gridpath.representations.base import representation_of
 
 
@@ -72,6 +81,8 @@ class DiscreteSBX(Crossover):
         -------
         numpy.ndarray of int, shape (2, n_matings, n_var)
         """
+        X, random_state = pairs(X), generator(random_state)
+        xl, xu = bounds_of(X.shape[2], xl, xu)
         taking_part = (random_state.random(X.shape[1:]) < number(self.prob_var)) & (X[0] != X[1])
         mating, gene = np.nonzero(taking_part)
         a, b = X[0, mating, gene], X[1, mating, gene]
@@ -124,9 +135,10 @@ class PointCrossover(Crossover):
 
     def cross(self, X: np.ndarray, random_state) -> np.ndarray:
         """Return two children of each pair of parents, shape (2, n_matings, n_var)."""
+        X, random_state = pairs(X, "biuf"), generator(random_state)
         _, n_matings, n_var = X.shape
         n_points = min(self.n_points, n_var - 1)
-        if n_points == 0:
+        if n_points < 1:
             return X.copy()
         places = random_state.random((n_matings, n_var - 1))
         cut = np.zeros((n_matings, n_var), dtype=np.int8)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from pymoo.core.algorithm import Algorithm
 from pymoo.core.mutation import Mutation
 from pymoo.core.variable import Real
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.crossover import bits_of
-from pymoo_gridpath.operators.parameters import check_whole_rows, in_range, number
+from pymoo_gridpath.operators.parameters import bounds_of, check_whole_rows, generator, in_range, number, rate_of, rows
 
 
 class DiscretePolynomialMutation(Mutation):
@@ -68,6 +70,8 @@ class DiscretePolynomialMutation(Mutation):
         -------
         numpy.ndarray of int, shape (N, n_var)
         """
+        X, random_state, rate = rows(X), generator(random_state), rate_of(rate)
+        xl, xu = bounds_of(X.shape[1], xl, xu)
         row, gene = np.nonzero((random_state.random(X.shape) < rate) & (xl < xu))
         value = X[row, gene]
         down, up = value - xl[gene], xu[gene] - value
@@ -128,11 +132,13 @@ class BitwiseMutation(Mutation):
 
     def decay(self, algorithm) -> float:
         """Return the share of the initial rate that is left."""
+        checks.instance("algorithm", algorithm, Algorithm, " of pymoo", optional=True)
         done = 0.0 if algorithm is None or algorithm.termination is None else algorithm.termination.perc
         return 1.0 - (1.0 - self.final) * float(np.clip(done, 0.0, 1.0))
 
     def flip(self, X: np.ndarray, rate: float, random_state) -> np.ndarray:
         """Return a copy of bits (bool, or integers 0 and 1) with each flipped with probability ``rate``."""
+        X, random_state, rate = rows(X), generator(random_state), rate_of(rate)
         return X ^ (random_state.random(X.shape) < rate).astype(X.dtype)
 
 

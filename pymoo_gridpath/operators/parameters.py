@@ -84,3 +84,31 @@ def check_whole_rows(operator: str, X: np.ndarray, problem, instead: str) -> Non
         )
     if problem.xl is None or problem.xu is None:
         raise GridPathError(f"{operator} draws within bounds and the problem has none, expected xl and xu")
+
+
+def pairs(X: np.ndarray, kinds: str = "biu") -> np.ndarray:
+    """Return rows of parents if they are such, shape (2, n_matings, n_var)."""
+    what = "whole numbers" if "f" not in kinds else "numbers"
+    return checks.array("X", X, (2, None, None), kinds, expected=f"{what} of shape (2, n_matings, n_var)")
+
+
+def rows(X: np.ndarray) -> np.ndarray:
+    """Return rows of whole numbers or bits if they are such, shape (N, n_var)."""
+    return checks.array("X", X, (None, None), "biu", expected="whole numbers of shape (N, n_var)")
+
+
+def bounds_of(n_var: int, xl: np.ndarray, xu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bounds of so many genes if they are such."""
+    expected = f"{n_var} bounds, finite numbers"
+    xl, xu = (checks.array(k, v, (n_var,), expected=expected, finite=True) for k, v in (("xl", xl), ("xu", xu)))
+    return xl, xu
+
+
+def generator(random_state: np.random.Generator) -> np.random.Generator:
+    """Return a generator of random numbers if it is one."""
+    return checks.instance("random_state", random_state, np.random.Generator, " such as numpy.random.default_rng(1)")
+
+
+def rate_of(rate: float) -> float:
+    """Return a probability if it is one."""
+    return checks.number("rate", rate, 0.0, 1.0, expected="a probability from 0 to 1")

@@ -26,8 +26,8 @@ def terrain_of(problem) -> Terrain:
     GridPathError
         If the problem has no path representation.
     """
+    representation = representation_of(problem)
     if problem not in _TERRAINS:
-        representation = representation_of(problem)
         fields = [field_of(objective, problem.grid) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)

@@ -11,9 +11,9 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.checks import printable, shown
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.decision.trade_off import check_set
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.convergence import as_recorders, plot_convergence
@@ -84,7 +84,7 @@ def save_figures(
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise GridPathError(
-            f"{printable(directory)}: the folder cannot be made ({error.strerror}), expected a writable place"
+            f"{visible(directory)}: the folder cannot be made ({error.strerror}), expected a writable place"
         ) from None
     for name in _NAMES:
         for form in _METADATA:

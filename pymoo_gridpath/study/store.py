@@ -21,6 +21,9 @@ from pymoo_gridpath.study.record import DamagedRecordError, RunRecord, from_byte
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
+# Keys are hashes of what a run is; longer names of files are none on most systems.
+_LONGEST_KEY = 200
+
 
 @dataclass(frozen=True)
 class StoredRuns:
@@ -67,7 +70,8 @@ class Store:
 
     def path(self, key: str) -> Path:
         """Return the file of a run, whether it is there or not."""
-        key = checks.text("key", key)
+        if not isinstance(key, str) or not 0 < len(key) <= _LONGEST_KEY or Path(key).name != key or "\0" in key:
+            raise GridPathError(f"key is {checks.shown(key)}, expected the key of a run")
         return self.folder / "runs" / key[:2] / f"{key}.npz"
 
     def write(self, key: str, data: bytes) -> None:
