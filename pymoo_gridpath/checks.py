@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from pymoo_gridpath.errors import GridPathError, nearest
+from pymoo_gridpath.errors import GridPathError, nearest, visible
 
 T = TypeVar("T")
 
@@ -72,7 +72,7 @@ def shown(value: Any) -> str:
 
 def printable(text: object, most: int = 300) -> str:
     """Return a text, such as a path, on one line: what cannot be printed escaped, and the middle left out if it is too long."""
-    line = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in str(text))
+    line = visible(text)
     return line if len(line) <= most else f"{line[: most // 2]}...{line[-most // 2 :]}"
 
 
