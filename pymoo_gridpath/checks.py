@@ -67,8 +67,13 @@ def shown(value: Any) -> str:
         text = _BRIEF.repr(value)
     except Exception:
         text = f"an object of the class {type(value).__name__}"
-    text = visible(text)
-    return text if len(text) <= 2 * _MOST_SHOWN else f"{text[:_MOST_SHOWN]}...{text[-_MOST_SHOWN:]}"
+    return printable(text, 2 * _MOST_SHOWN)
+
+
+def printable(text: object, most: int = 300) -> str:
+    """Return a text, such as a path, on one line: what cannot be printed escaped, and the middle left out if it is too long."""
+    line = visible(text)
+    return line if len(line) <= most else f"{line[: most // 2]}...{line[-most // 2 :]}"
 
 
 def _scalar(value: Any) -> Any:

@@ -74,8 +74,8 @@ class OccupancyGrid:
         name: str = "grid",
         unknown: ArrayLike | None = None,
     ):
-        self._occupied = _as_occupied(occupied)
-        self._unknown = None if unknown is None else _as_occupied(unknown)
+        self._occupied = _as_cells("occupied", occupied)
+        self._unknown = None if unknown is None else _as_cells("unknown", unknown)
         if self._unknown is not None and self._unknown.shape != self.shape:
             raise GridError(f"unknown has the shape {self._unknown.shape}, expected that of the grid, {self.shape}")
         self._resolution = checks.number(
@@ -468,16 +468,16 @@ def _pairs(name: str, values: ArrayLike, what: str) -> np.ndarray:
     return pairs
 
 
-def _as_occupied(occupied: ArrayLike) -> np.ndarray:
+def _as_cells(name: str, cells: ArrayLike) -> np.ndarray:
     """Return a read-only bool copy of an array of 0 and 1."""
-    expected = "a two-dimensional array of booleans, or of 0 (free) and 1 (occupied)"
-    array = checks.array("occupied", occupied, expected=expected, error=GridError)
+    values = "0 (free) and 1 (occupied)" if name == "occupied" else "0 and 1"
+    array = checks.array(name, cells, expected=f"a two-dimensional array of booleans, or of {values}", error=GridError)
     if array.ndim != 2:
-        raise GridError(f"a grid needs a two-dimensional array of occupied cells, got {array.ndim} dimensions")
+        raise GridError(f"a grid needs a two-dimensional array of {name} cells, got {array.ndim} dimensions")
     if array.size == 0:
         raise GridError(f"a grid needs at least one cell, got an array of shape {array.shape}")
     if array.dtype != bool and not np.isin(array, (0, 1)).all():
-        raise GridError("a grid needs an array of booleans, or of 0 (free) and 1 (occupied), got other values")
+        raise GridError(f"a grid needs an array of booleans, or of {values}, as {name} cells, got other values")
     # Row by row whatever the order of the given one, for its bytes and its flat view are those of the grid.
     copy = array.astype(bool, order="C")
     copy.flags.writeable = False

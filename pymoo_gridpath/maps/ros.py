@@ -73,10 +73,10 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
     so are thresholds outside 0 to 1, a resolution that is not positive and files of more than 64 KiB. Pixels that the tag of
     GDAL in a TIFF calls nodata are treated as transparent.
 
-    Older map servers (ROS 1, Navigation2 up to Iron) differ: they compare strictly (p > ``occupied_thresh``, p < ``free_thresh``),
-    with occupied before free, in double precision and without cutting to 8 bits, so that a value that equals a threshold is
-    unknown there. They take the mean of the colours, and in trinary mode average the alpha channel with them. ROS 1
-    furthermore applies ``negate`` in raw mode and keeps raw values above 100.
+    Older map servers (ROS 1, Navigation2 up to Iron) differ: they compare strictly (p > ``occupied_thresh``,
+    p < ``free_thresh``), occupied first, in double precision and without cutting to 8 bits, so that a value that equals a
+    threshold is unknown there. They take the mean of the colours, and in trinary mode average the alpha channel with them.
+    ROS 1 furthermore applies ``negate`` in raw mode and keeps raw values above 100.
     """
     check_unknown(path, unknown)
     settings = _read_settings(path)
