@@ -254,7 +254,7 @@ def _plan(arguments) -> int:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
     print(trade_off.table(max_rows=MAX_ROWS))
     if trade_off.advice:
-        print(f"pymoo-gridpath: {trade_off.advice}", file=sys.stderr)
+        say(trade_off.advice)
     if len(results) > 1:
         print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(visible(file) for file in files), flush=True)

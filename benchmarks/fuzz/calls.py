@@ -278,7 +278,8 @@ def _own_objective(w: World, field, factor):
 
 def _codings(w: World) -> dict[str, Call]:
     found: dict[str, Call] = {
-        "make_representation": (representations.make_representation, {"name": "mixed", "grid": w.grid, **w.query, "axis": "x"})
+        "default_representation": (representations.default_representation, {"corner_cutting": True, "axis": "x"}),
+        "make_representation": (representations.make_representation, {"name": "mixed", "grid": w.grid, **w.query, "axis": "x"}),
     }
     for coding in w.codings.values():
         cls = type(coding)
@@ -418,6 +419,7 @@ def _algorithms(w: World) -> dict[str, Call]:
                 "n_offsprings": 12,
             },
         ),
+        "PathOutput": (algorithms.PathOutput, {"distance": False}),
         "ExactFront": (
             algorithms.ExactFront,
             {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False},

@@ -9,6 +9,8 @@ import numpy as np
 from pymoo.util.display.column import Column
 from pymoo.util.display.output import Output
 
+from pymoo_gridpath import checks
+
 
 class PathOutput(Output):
     """A line a generation: evaluations, legal paths of the population, the least length among them, distance to the front.
@@ -27,6 +29,11 @@ class PathOutput(Output):
     distance : bool, default True
         Whether to show the distance to the front.
 
+    Raises
+    ------
+    GridPathError
+        If distance is no truth value.
+
     References
     ----------
     H. Ishibuchi, H. Masuda, Y. Tanigaki and Y. Nojima, "Modified distance calculation in generational distance and inverted
@@ -35,7 +42,7 @@ class PathOutput(Output):
 
     def __init__(self, distance: bool = True):
         super().__init__()
-        self.distance = distance
+        self.distance = checks.flag("distance", distance)
         self.legal = Column("legal", width=6)
         self.length = Column("length", width=11)
         self.igd_plus = Column("igd+", width=9)

@@ -11,7 +11,7 @@ from pymoo.core.problem import Problem
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
+from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.frame import Axis, check_axis
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
@@ -241,7 +241,7 @@ class GridPathProblem(Problem):
                 self._front = found if found.complete else None
                 self._no_front = seconds, f"the search {found.message}{more}"
         if self._front is None and self._no_front is not None:
-            warnings.warn(f"no Pareto front: {self._no_front[1]}", stacklevel=7)
+            warnings.warn(f"no Pareto front: {self._no_front[1]}", GridPathWarning, stacklevel=7)
         return self._front
 
     # -- measures -----------------------------------------------------------------------------------------------------
@@ -306,6 +306,7 @@ class GridPathProblem(Problem):
         warnings.warn(
             f"{what}; operators that make legal paths: NSGA2(**path_operators(problem)), with path_operators from "
             f"pymoo_gridpath.operators",
+            GridPathWarning,
             stacklevel=2,
         )
 

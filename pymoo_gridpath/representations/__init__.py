@@ -38,12 +38,18 @@ def default_representation(corner_cutting: bool, axis: Axis = "auto") -> str:
         "cells", which codes every path; "integer", the paper's, where corners may be cut, which is the world of the paper, or
         where an axis is given, along which paths are to advance.
 
+    Raises
+    ------
+    GridPathError
+        If corner_cutting is no truth value, or there is no such axis.
+
     Examples
     --------
     >>> default_representation(corner_cutting=False), default_representation(corner_cutting=True)
     ('cells', 'integer')
     """
-    return IntegerRepresentation.name if corner_cutting or axis != "auto" else CellSequence.name
+    check_axis(axis)
+    return IntegerRepresentation.name if checks.flag("corner_cutting", corner_cutting) or axis != "auto" else CellSequence.name
 
 
 def make_representation(

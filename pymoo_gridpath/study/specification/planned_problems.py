@@ -152,13 +152,14 @@ def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: Occ
 def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
     """Return the canonical form of a problem."""
     corner_cutting = item.grid.get("random", item.grid)["corner_cutting"]
+    default = default_representation(corner_cutting, spec.axis)  # pyright: ignore[reportArgumentType]
     return canonical.settle(
         {
             "grid": item.grid,
             "start": list(item.start),
             "goal": list(item.goal),
             "objectives": list(spec.objectives),
-            "representation": spec.representation or default_representation(corner_cutting, spec.axis),
+            "representation": spec.representation or default,
             "obstacles": spec.obstacles,
             "penalty": spec.penalty,
             "potential_limit": spec.potential_limit,
