@@ -191,3 +191,39 @@ def test_unknown_cells_stay_with_the_grid_and_make_no_other_grid():
     assert grid.replace(occupied=[[0, 1]]).unknown is None
     with pytest.raises(GridError, match=r"unknown has the shape \(1, 2\), expected that of the grid, \(2, 3\)"):
         grid.replace(unknown=[[0, 1]])
+
+
+WALLED = [  # rows from the bottom; the wall in the middle parts the map, and the ends of it are pockets
+    [0, 0, 0, 1, 0, 0],
+    [0, 0, 1, 1, 0, 1],
+    [0, 0, 0, 1, 0, 0],
+    [1, 0, 0, 1, 1, 0],
+]
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "message"),
+    [
+        # (2, 2) is nearer or as near, but on the other side of the wall.
+        (
+            (3, 2),
+            (5, 0),
+            r"start \(3, 2\) lies on an obstacle .*; the nearest free cell that a path joins with \(5, 0\) is \(4, 2\)",
+        ),
+        ((3, 2), (0, 0), r"the nearest free cell that a path joins with \(0, 0\) is \(2, 2\)"),
+        ((0, 0), (4, 3), r"goal \(4, 3\) .*; the nearest free cell that a path joins with \(0, 0\) is \(2, 3\)"),
+        ((0, 0), (9, 0), r"goal \(9, 0\) lies outside .*; the nearest free cell that a path joins with \(0, 0\) is \(2, 0\)"),
+        # If neither end will do, the nearest of all is as good.
+        ((3, 2), (3, 0), r"start \(3, 2\) lies on an obstacle .*; the nearest free cell is \(2, 2\)"),
+    ],
+)
+def test_the_hint_for_an_occupied_end_is_joined_with_the_other(start, goal, message):
+    with pytest.raises(GridError, match=message):
+        OccupancyGrid(WALLED).check_query(start, goal)
+
+
+def test_an_end_that_is_walled_in_has_no_hint():
+    grid = OccupancyGrid([[0, 1, 0], [1, 1, 0]])
+    with pytest.raises(GridError, match=r"goal \(1, 0\) .*; there is no free cell that a path joins with \(0, 0\)"):
+        grid.check_query((0, 0), (1, 0))
+    assert grid.nearest_free((1, 0), joined_with=(2, 0)) == (2, 1)

@@ -97,7 +97,8 @@ def check_values(owner: str, given: dict[str, Any], accepted: dict[str, Any]) ->
     """
     for key, value in given.items():
         default = accepted.get(key, inspect.Parameter.empty)
-        if value is None and (default is None or default is inspect.Parameter.empty):
+        # RVEA without an adaptation is one of pymoo's, though not the default.
+        if value is None and (default in (None, inspect.Parameter.empty) or key == "adapt_freq"):
             continue
         if key in NAMES:
             checks.one_of(key, value, NAMES[key], CapabilityError)
@@ -111,10 +112,11 @@ def check_values(owner: str, given: dict[str, Any], accepted: dict[str, Any]) ->
             above = key == "adapt_freq"
             room = "above 0, at most 1" if above else "from 0 to 1"
             checks.number(key, value, 0, 1, above=above, expected=f"a number {room} for {owner}", error=CapabilityError)
-        elif isinstance(default, bool | np.bool_):
-            # An object may say which are duplicates.
-            if key != "eliminate_duplicates" or not isinstance(value, DuplicateElimination):
-                checks.flag(key, value, CapabilityError)
+        elif key == "eliminate_duplicates":
+            if not isinstance(value, bool | DuplicateElimination):
+                raise CapabilityError(f"{key} is {checks.shown(value)}, expected True, False or a DuplicateElimination")
+        elif isinstance(default, bool):
+            checks.flag(key, value, CapabilityError)
         elif isinstance(default, int):
             check_whole(owner, key, value)
         elif isinstance(default, float):
@@ -131,7 +133,8 @@ def _check_variant(owner: str, value: Any) -> None:
     match = VARIANT.fullmatch(value) if isinstance(value, str) else None
     if match is None or match["base"] not in BASES_OF_VARIANTS or match["crossover"] not in CROSSOVERS_OF_VARIANTS:
         raise CapabilityError(
-            f"variant is {checks.shown(value)}, expected such as 'DE/rand/1/bin' for {owner}: one of {', '.join(BASES_OF_VARIANTS)}, "
+            f"variant is {checks.shown(value)}, expected such as 'DE/rand/1/bin' for {owner}: one of "
+            f"{', '.join(BASES_OF_VARIANTS)}, "
             f"how many differences, and one of {', '.join(CROSSOVERS_OF_VARIANTS)}"
         )
 

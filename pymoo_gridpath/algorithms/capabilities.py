@@ -45,8 +45,8 @@ class Capability:
     one_child : bool
         The crossover must give one child of each mating.
     unpacks : bool
-        pymoo's own constructor takes all that `path_operators` and `default_operators` return, ``cls(**path_operators(problem))``,
-        and the run heeds it. Where it is False, `make_algorithm` fits them; see the note.
+        pymoo's own constructor takes all that `path_operators` and `default_operators` return,
+        ``cls(**path_operators(problem))``, and the run heeds it. Where it is False, `make_algorithm` fits them; see the note.
     unfit : str
         Why `make_algorithm` refuses it for every grid problem, a sentence without its subject; "" if it does not.
     note : str

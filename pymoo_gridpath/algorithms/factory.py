@@ -162,7 +162,7 @@ def build(
     **kwargs,
 ) -> Algorithm:
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
-    _arguments.check_whole(row.name, "pop_size", pop_size, most=_arguments.MOST)
+    _arguments.check_whole(row.name, "pop_size", pop_size)
     cls = _class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     # These two classes need not be told: smoothness is an argument of this function.
@@ -176,6 +176,7 @@ def build(
     _arguments.check(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
     _arguments.check_values(row.name, {key: value for key, value in given.items() if key != "smoothness"}, accepted)
     _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(row, kwargs))
+    _arguments.check_whole(row.name, "pop_size", pop_size, most=_arguments.MOST)
     settings = _arguments.fresh_defaults(accepted)
     if isinstance(problem, GridPathProblem):
         settings["output"] = PathOutput()
@@ -232,8 +233,8 @@ def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
     n_obj : int
         Number of objectives, 1 to 100.
     n_points : int
-        At most how many, up to 100,000; the largest simplex lattice within is taken. With two objectives there are exactly ``n_points``, with
-        three 1, 3, 6, 10, ..., 91, ...
+        At most how many, up to 100,000; the largest simplex lattice within is taken. With two objectives there are exactly
+        ``n_points``, with three 1, 3, 6, 10, ..., 91, ...
 
     Returns
     -------

@@ -48,10 +48,10 @@ class FiniteAPDSurvival(ArraySurvival, APDSurvival):
         self.V = calc_V(calc_V(self.ref_dirs) * np.where(span > 0, span, 1.0))
         self.gamma = _least_angles(self.V)
 
-    def _do(self, problem, pop, *args, n_survive=None, algorithm=None, n_gen=None, n_max_gen=None, **kwargs):
+    def _do(self, problem, pop, *args, n_survive=None, algorithm: Any = None, n_gen=None, n_max_gen=None, **kwargs):
         n_gen = algorithm.n_gen - 1 if n_gen is None else n_gen
         n_max_gen = algorithm.termination.n_max_gen if n_max_gen is None else n_max_gen
-        # A budget of fewer evaluations than the first population takes is one of no generation.
+        # pymoo counts a budget of evaluations that the first population uses up as one of no generation.
         progress = n_gen / n_max_gen if n_max_gen > 0 else 1.0
         F = pop.get("F").astype(float)
         self.ideal = np.minimum(F.min(axis=0), self.ideal)

@@ -38,9 +38,9 @@ class StrengthAndSmoothness(ArraySurvival):
     ``SPEA_R`` (raw fitness) and ``SPEA_D`` (density, below 1), smaller is better. Infeasible individuals come after all
     feasible ones, in order of their constraint violation.
 
-    Needs `StrengthTournament` as ``selection`` beside it, for pymoo's own compares the fitness, in which turn has no part. And a
-    problem that sets ``turn``, such as `GridPathProblem`; without it, it warns, and distances decide alone. The type of the genes
-    does not matter.
+    Needs `StrengthTournament` as ``selection`` beside it, for pymoo's own compares the fitness, in which turn has no part. And
+    a problem that sets ``turn``, such as `GridPathProblem`; without it, it warns, and distances decide alone. The type of the
+    genes does not matter.
 
     References
     ----------

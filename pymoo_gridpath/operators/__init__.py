@@ -58,8 +58,8 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
 
     pymoo's own constructors take them as they are where the capability table says "Unpacks":
     ``NSGA2(pop_size=100, **paper_operators(problem))``. Others, such as MOEA/D, refuse one of them or heed it not;
-    ``make_algorithm("MOEA/D", problem, operators=paper_operators(problem))`` fits them to every algorithm that takes a crossover and
-    a mutation.
+    ``make_algorithm("MOEA/D", problem, operators=paper_operators(problem))`` fits them to every algorithm that takes a
+    crossover and a mutation.
 
     Parameters
     ----------
@@ -112,8 +112,8 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
 
     pymoo's own constructors take them as they are where the capability table says "Unpacks":
     ``NSGA2(pop_size=100, **path_operators(problem))``. Others, such as MOEA/D, refuse one of them or heed it not;
-    ``make_algorithm("MOEA/D", problem, operators=path_operators(problem))`` fits them to every algorithm that takes a crossover and
-    a mutation.
+    ``make_algorithm("MOEA/D", problem, operators=path_operators(problem))`` fits them to every algorithm that takes a
+    crossover and a mutation.
 
     Parameters
     ----------

@@ -30,9 +30,9 @@ class DiscreteSBX(Crossover):
     in it, and they change places with probability one half, as in pymoo.
 
     Needs whole-number genes: a sampling that draws them, such as `RandomSampling`, and bounds ``xl`` and ``xu``; pymoo's
-    ``SBX`` is for real variables. Children keep to the bounds, but a gene of the paper's codings is a step from the cell before,
-    so that a child may leave the grid: on a path problem give the algorithm `EdgeFixing` as ``repair``, as `paper_operators`
-    does.
+    ``SBX`` is for real variables. Children keep to the bounds, but a gene of the paper's codings is a step from the cell
+    before, so that a child may leave the grid: on a path problem give the algorithm `EdgeFixing` as ``repair``, as
+    `paper_operators` does.
 
     Parameters
     ----------
@@ -149,7 +149,10 @@ class PointCrossover(Crossover):
 
 
 class TwoPointCrossover(PointCrossover):
-    """Two-point crossover, the paper's for the binary coding (section 2.1); see `PointCrossover` for what it needs beside it."""
+    """Two-point crossover, the paper's for the binary coding (section 2.1).
+
+    See `PointCrossover` for what it needs beside it.
+    """
 
     def __init__(self, prob: float = 0.9, **kwargs):
         super().__init__(2, prob=prob, **kwargs)

@@ -21,8 +21,8 @@ class DiscretePolynomialMutation(Mutation):
     / range)**eta has over the unit cell around z, cut off at the bound. Rounding the continuous operator instead would
     leave most genes as they were.
 
-    Needs whole-number genes: a sampling that draws them, such as `RandomSampling`, and bounds ``xl`` and ``xu``; pymoo's ``PM`` is
-    for real variables. On a path problem a mutated path may leave the grid: give the algorithm `EdgeFixing` as ``repair``.
+    Needs whole-number genes: a sampling that draws them, such as `RandomSampling`, and bounds ``xl`` and ``xu``; pymoo's ``PM``
+    is for real variables. On a path problem a mutated path may leave the grid: give the algorithm `EdgeFixing` as ``repair``.
 
     Parameters
     ----------
@@ -125,8 +125,8 @@ class BitwiseMutation(Mutation):
         check_whole_rows("BitwiseMutation", X, problem, "pymoo's PM")
         if np.max(problem.xu) > 1 or np.min(problem.xl) < 0:
             raise GridPathError(
-                f"BitwiseMutation flips bits and genes go from {np.min(problem.xl):g} to {np.max(problem.xu):g}, expected bounds "
-                f"of 0 and 1; DiscretePolynomialMutation is for whole numbers"
+                f"BitwiseMutation flips bits and genes go from {np.min(problem.xl):g} to {np.max(problem.xu):g}, expected "
+                f"bounds of 0 and 1; DiscretePolynomialMutation is for whole numbers"
             )
         return self.flip(X, number(self.get_prob_var(problem)) * self.decay(algorithm), random_state)
 

@@ -18,6 +18,7 @@ class PathRepair(Repair):
     """
 
     def _do(self, problem, X, random_state=None, **kwargs):
+        assert random_state is not None
         representation, terrain = representation_of(problem), terrain_of(problem)
         X = representation.repair(X, random_state)
         broken = ~are_legal(representation.to_sequences(X), terrain)

@@ -21,4 +21,5 @@ class EdgeFixing(Repair):
     """
 
     def _do(self, problem, X, random_state=None, **kwargs):
+        assert random_state is not None
         return representation_of(problem).repair(X, random_state)

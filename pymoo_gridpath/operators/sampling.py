@@ -20,8 +20,8 @@ class RandomSampling(Sampling):
         assert random_state is not None
         if problem.vtype is None or np.dtype(problem.vtype).kind not in "iub" or problem.xl is None or problem.xu is None:
             raise GridPathError(
-                f"RandomSampling draws whole numbers within bounds and the problem has the vtype {problem.vtype}, expected int or "
-                f"bool with xl and xu; pymoo's FloatRandomSampling is for real variables"
+                f"RandomSampling draws whole numbers within bounds and the problem has the vtype {problem.vtype}, expected int "
+                f"or bool with xl and xu; pymoo's FloatRandomSampling is for real variables"
             )
         low, high = problem.xl.astype(np.int64), problem.xu.astype(np.int64)
         X = random_state.integers(low, high, size=(n_samples, problem.n_var), endpoint=True)

@@ -14,8 +14,8 @@ class SmoothnessTournament(TournamentSelection):
     turn; of equal turns the one with the larger crowding distance; and else either. If one of them is infeasible, the
     one with the smaller constraint violation wins first (Deb's parameter-less rule).
 
-    Needs `RankAndSmoothness` as survival beside it, which sets ``rank`` and ``crowding``, and a problem that sets ``turn``, without
-    which that survival warns and turns count as equal. The type of the genes does not matter.
+    Needs `RankAndSmoothness` as survival beside it, which sets ``rank`` and ``crowding``, and a problem that sets ``turn``,
+    without which that survival warns and turns count as equal. The type of the genes does not matter.
 
     References
     ----------

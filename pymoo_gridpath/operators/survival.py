@@ -41,8 +41,8 @@ def turns_of(pop, owner: str) -> np.ndarray:
     if turn.dtype == object:
         # Python's filter shows it once in a run.
         warnings.warn(
-            f"{owner} breaks ties by total turn and the problem gives none, so that it breaks none; expected one that sets 'turn' "
-            f"in each evaluation, such as GridPathProblem",
+            f"{owner} breaks ties by total turn and the problem gives none, so that it breaks none; expected one that sets "
+            f"'turn' in each evaluation, such as GridPathProblem",
             stacklevel=1,
         )
         return np.zeros(len(turn))
