@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import os
-import pty
 import signal
 import subprocess
 import sys
@@ -353,6 +352,7 @@ def test_progress_shows_on_a_terminal_and_clears_its_line():
 
 
 def test_progress_appears_on_a_real_terminal(tmp_path, free_map):
+    pty = pytest.importorskip("pty", reason="there are no pseudo-terminals on Windows")
     master, slave = pty.openpty()
     command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", str(free_map), "--start", "0,0", "--goal", "5,3"]
     command += ["--pop-size", "50", "--generations", "60", "-o", str(tmp_path / "out")]

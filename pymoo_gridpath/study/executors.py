@@ -22,7 +22,7 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLI
 _UNKNOWN_CAPACITY = 64
 
 # No computer has use for more.
-_MOST_PROCESSES = 4096
+_MOST_PROCESSES = 61 if os.name == "nt" else 4096  # Windows waits for no more than 63 things at once
 
 
 class StudyExecutor(Executor):
