@@ -6,6 +6,7 @@ import os
 import reprlib
 import sys
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -89,6 +90,12 @@ def warn(path: str | os.PathLike[str], message: str) -> None:
     while (outer := frame.f_back) is not None and frame.f_globals.get("__name__", "").startswith("pymoo_gridpath."):
         level, frame = level + 1, outer
     warnings.warn(MapWarning(path, message), stacklevel=level)
+
+
+def blocks(height: int, width: int) -> Iterator[slice]:
+    """Yield the rows of an array of this size as slices of about `BLOCK` cells each."""
+    step = max(BLOCK // width, 1)
+    return (slice(start, min(start + step, height)) for start in range(0, height, step))
 
 
 def shorten(value: object) -> str:

@@ -80,7 +80,7 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
     """
     check_unknown(path, unknown)
     settings = _read_settings(path)
-    pixels = read_pixels(settings.image)
+    pixels = read_pixels(settings.image, turn=False)
     grey = pixels.grey()
     percent = _occupancy(pixels, grey, settings)
     unseen = percent == UNKNOWN
