@@ -58,7 +58,9 @@ def check_before(path, file: BinaryIO) -> Tags:
     size = os.fstat(file.fileno()).st_size
     tags = {}
     if re.match(rb"P[123]\s", head) and size > MAX_PLAIN:
-        raise MapError(path, f"the file has {size} bytes of numbers as text, expected at most {MAX_PLAIN}, or a binary PNM file")
+        raise MapError(
+            path, f"the file has {size} bytes of numbers as text, expected at most {MAX_PLAIN}, or a binary PNM file"
+        )
     if head in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"):
         try:
             tags = _read_tags(path, file, ">" if head[:1] == b"M" else "<", b"+" in head)
@@ -152,7 +154,9 @@ def check_jpeg(path, file: BinaryIO, width: int, height: int) -> None:
     """Raise MapError where a JPEG file is too short for its size or has too many scans."""
     size, cells, scans = os.fstat(file.fileno()).st_size, width * height, 0
     if cells > JPEG_CELLS_PER_BYTE * size:
-        raise MapError(path, f"the image declares {width} x {height} cells, for which {size} bytes are too few, expected a whole one")
+        raise MapError(
+            path, f"the image declares {width} x {height} cells, for which {size} bytes are too few, expected a whole one"
+        )
     at, last = file.tell(), b""
     file.seek(0)
     while block := file.read(1 << 20):
@@ -160,7 +164,9 @@ def check_jpeg(path, file: BinaryIO, width: int, height: int) -> None:
         last = b"\xff" if block.endswith(b"\xff") else b""
     file.seek(at)
     if scans * cells > MAX_SCANNED and scans > 1:
-        raise MapError(path, f"the image has {width} x {height} cells in {scans} scans, expected a JPEG file that is not progressive")
+        raise MapError(
+            path, f"the image has {width} x {height} cells in {scans} scans, expected a JPEG file that is not progressive"
+        )
 
 
 def check_png(path) -> None:

@@ -182,7 +182,9 @@ def _blank_within(body: bytes) -> int | None:
     return None
 
 
-def _bad_row(path, body: bytes, index: int, first_line: int, width: int, codes: np.ndarray, free: str, occupied: str) -> MapError:
+def _bad_row(
+    path, body: bytes, index: int, first_line: int, width: int, codes: np.ndarray, free: str, occupied: str
+) -> MapError:
     """Return the error of a row that cannot be read."""
     start = 0
     # In blocks, because there may be as many rows as cells.

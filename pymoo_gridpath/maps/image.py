@@ -65,8 +65,9 @@ class Pixels:
         """Return where the mean of the channels, laid over white, is below a threshold; ``unseen`` where nothing is shown."""
         white = self.white if self.channels.ndim == 2 else 3 * self.white
         dark = np.arange(white + 1) / white < threshold
-        below = np.empty(self.channels.shape[:2], dtype=bool)
-        for rows in blocks(*below.shape):
+        height, width = self.channels.shape[:2]
+        below = np.empty((height, width), dtype=bool)
+        for rows in blocks(height, width):
             shade = self.channels[rows]
             if shade.ndim == 3:
                 # Three times as fast as `sum`, whose inner loop would be over three values.
@@ -163,8 +164,8 @@ def read_image(
 def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:
     """Decode an image; the one place that opens images.
 
-    Values of more than 8 bits are taken as 16-bit ones. Colours of 16 bits a channel are read as 8-bit ones. Pixels that the tag of
-    GDAL in a TIFF calls nodata are transparent.
+    Values of more than 8 bits are taken as 16-bit ones. Colours of 16 bits a channel are read as 8-bit ones. Pixels that the
+    tag of GDAL in a TIFF calls nodata are transparent.
 
     Parameters
     ----------
@@ -203,15 +204,18 @@ def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:
             raise MapError(path, "the image is damaged or cut short, expected a whole image file") from None
     turned |= orientation in TURNS
     if turned and not turn:
-        raise MapError(path, "the image says that it is turned (EXIF orientation), which map servers ignore; expected one that is not")
+        raise MapError(
+            path, "the image says that it is turned (EXIF orientation), which map servers ignore; expected one that is not"
+        )
     return _turned(pixels, TURNS[orientation]) if orientation in TURNS else pixels
 
 
 def _check_cost(path, file: CountedReader, image: ImageFile.ImageFile) -> None:
     """Raise MapError for an image that covers only a part of its size, or would take too much memory or time."""
     cells = image.width * image.height
-    covered = sum((right - left) * (lower - upper) for _, (left, upper, right, lower), *_ in image.tile)
-    if image.tile and covered < cells:
+    boxes = [tile[1] or (0, 0, *image.size) for tile in image.tile]
+    covered = sum((right - left) * (lower - upper) for left, upper, right, lower in boxes)
+    if boxes and covered < cells:
         raise MapError(path, f"the image has {covered} of {image.width} x {image.height} cells, expected all of them")
     size = {"1": 2, "L": 2, "P": 4, "I;16": 4}.get(image.mode, 8)
     if image.format == "JPEG":
@@ -221,7 +225,8 @@ def _check_cost(path, file: CountedReader, image: ImageFile.ImageFile) -> None:
         size = 22
     if size * cells > MAX_DECODED:
         raise MapError(
-            path, f"the image takes {size * cells} bytes when it is decoded, expected at most {MAX_DECODED}; a grey PNG takes less"
+            path,
+            f"the image takes {size * cells} bytes when it is decoded, expected at most {MAX_DECODED}; a grey PNG takes less",
         )
 
 
@@ -239,16 +244,16 @@ def _decode(path, image: Image.Image, tags: Tags) -> Pixels:
     alpha = None
     if own_alpha or nodata is not None or (wide and isinstance(key, int)):
         alpha = np.full(shape, 255, np.uint8)
-    low, high, dark = 0, 0, True
+    low, high = 0, 0
     for rows in blocks(*shape):
         part = image.crop((0, rows.start, image.width, rows.stop))
         values = np.asarray(part)
-        dark = not values[-2:].any()
         if own_alpha:
             if key is not None:
                 part.info["transparency"] = key
             coloured = np.asarray(part.convert("RGBA"))
-            channels[rows], alpha[rows] = coloured[..., :3], coloured[..., 3]  # pyright: ignore[reportOptionalSubscript]
+            channels[rows] = coloured[..., :3]
+            alpha[rows] = coloured[..., 3]  # pyright: ignore[reportOptionalSubscript]
         elif wide:
             clear = np.isin(values, [value for value in (key, nodata) if isinstance(value, int)])
             known = values[~clear]
@@ -263,7 +268,9 @@ def _decode(path, image: Image.Image, tags: Tags) -> Pixels:
             alpha[rows][empty.all(axis=2) if empty.ndim == 3 else empty] = 0  # pyright: ignore[reportOptionalSubscript]
     if low < 0 or high > _WHITE_16:
         raise MapError(path, f"the pixels range from {low} to {high}, expected whole numbers of 8 or 16 bits")
-    if dark and image.format == "PNG":
+    # What a PNG file lacks ends up as zeros in the last row, or where it is interlaced in the last but one.
+    last = np.asarray(image.crop((0, max(image.height - 2, 0), image.width, image.height)))
+    if image.format == "PNG" and not all(row.any() for row in last):
         check_png(path)
     return Pixels(channels, _WHITE_16 if wide else 255, alpha)
 

@@ -17,8 +17,8 @@ from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_text_bytes, short_line, shorten
 
-# The benchmarks' own loader (``Map.cpp`` of HOG2) takes lower-case letters as their capitals, and any other character as ground.
-# The latter is refused here, because a wrong letter is more likely than such ground.
+# The benchmarks' own loader (``Map.cpp`` of HOG2) takes lower-case letters as their capitals, and any other character as
+# ground. The latter is refused here, because a wrong letter is more likely than such ground.
 PASSABLE = ".GSgs"
 # Water can be entered from water only, so to a robot that stands on the ground it is an obstacle.
 OCCUPIED = "@OTWotw"
