@@ -13,11 +13,14 @@ import struct
 import zlib
 from typing import Any, BinaryIO
 
+from PIL import Image
+
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.maps._files import MAX_CELLS
 
 # Of more strips or tiles, Pillow makes lists that take seconds and hundreds of megabytes.
 MAX_STRIPS = 100_000
+MAX_TAGS, MAX_VALUES, MAX_EXIF = 4096, 250_000, 1_000_000
 # Images with more parts (chunks, segments, blocks, runs) than this take seconds, however small they are.
 MAX_READS = 1_000_000
 # Plain (ASCII) PNM is decoded at 8 MB/s.
@@ -35,6 +38,8 @@ Tags = dict[int, Any]
 _KINDS = {1: "B", 2: "s", 3: "H", 4: "I", 16: "Q"}
 # How many bytes a byte of the file can stand for at most. Facsimile codes need a bit for each row instead.
 _RATIOS = {1: 1, 5: 2730, 7: 3 * JPEG_CELLS_PER_BYTE, 8: 1040, 32946: 1040, 32773: 64}
+# Directories within directories: EXIF, GPS, interoperability.
+_DIRECTORIES = (34665, 34853, 40965)
 _FACSIMILE = (2, 3, 4)
 
 
@@ -74,30 +79,41 @@ def check_before(path, file: BinaryIO) -> Tags:
 def _read_tags(path, file: BinaryIO, end: str, big: bool) -> Tags:
     """Read the tags of whole numbers and of text in the first directory of a TIFF file; of strips and tiles, as many zeros."""
     file.seek(8 if big else 4)
-    (at,) = _unpack(file, end + ("Q" if big else "I"))
-    file.seek(at)
-    (count,) = _unpack(file, end + ("Q" if big else "H"))
-    if count > 4096:
-        raise MapError(path, f"the image has {count} tags, expected at most 4096")
     tags = {}
-    entry = struct.Struct(end + ("HHQ8s" if big else "HHI4s"))
-    for tag, kind, number, value in [entry.unpack(file.read(entry.size)) for _ in range(count)]:
-        if number > MAX_STRIPS:
-            if tag in (STRIPS, TILES):
-                raise MapError(path, f"the image is in {number} parts, expected at most {MAX_STRIPS} strips or tiles")
-            if tag < 32768 and tag not in (STRIPS + 6, TILES + 1):
-                raise MapError(path, f"the tag {tag} of the image has {number} values, expected at most {MAX_STRIPS}")
-            continue
+    pointer = end + ("Q" if big else "I")
+    for tag, kind, number, value in _entries(path, file, end, big, _unpack(file, pointer)[0]):
+        if tag in (STRIPS, TILES) and number > MAX_STRIPS:
+            raise MapError(path, f"the image is in {number} parts, expected at most {MAX_STRIPS} strips or tiles")
+        if tag in _DIRECTORIES:
+            # Pillow reads these as well.
+            for nested, *_, place in _entries(path, file, end, big, struct.unpack_from(pointer, value)[0]):
+                if nested in _DIRECTORIES:
+                    _entries(path, file, end, big, struct.unpack_from(pointer, place)[0])
         if tag in (STRIPS, TILES):
             tags[tag] = (0,) * number
         elif kind in _KINDS and number:
             form = f"{end}{number}{_KINDS[kind]}"
             if struct.calcsize(form) > len(value):
-                file.seek(struct.unpack(end + ("Q" if big else "I"), value)[0])
+                file.seek(struct.unpack(pointer, value)[0])
                 value = file.read(struct.calcsize(form))
             values = struct.unpack(form, value[: struct.calcsize(form)])
             tags[tag] = values[0] if kind == 2 else values
     return tags
+
+
+def _entries(path, file: BinaryIO, end: str, big: bool, at: int) -> list[tuple[int, int, int, bytes]]:
+    """Return the tags of a directory with their kind, count and value, or raise MapError where they are too many."""
+    file.seek(at)
+    (count,) = _unpack(file, end + ("Q" if big else "H"))
+    if count > MAX_TAGS:
+        raise MapError(path, f"the image has {count} tags, expected at most {MAX_TAGS}")
+    entry = struct.Struct(end + ("HHQ8s" if big else "HHI4s"))
+    entries = [entry.unpack(file.read(entry.size)) for _ in range(count)]
+    for tag, kind, number, _ in entries:
+        # Bytes stay bytes; of other kinds, Pillow makes a number each.
+        if number > MAX_VALUES and kind not in (1, 2, 7):
+            raise MapError(path, f"the tag {tag} of the image has {number} values, expected at most {MAX_VALUES}")
+    return entries
 
 
 def _unpack(file: BinaryIO, form: str) -> tuple[int, ...]:
@@ -148,6 +164,13 @@ def nodata_of(tags: Tags, mode: str) -> int | None:
         # White is zero.
         return (1 if mode == "1" else 255) - number
     return number
+
+
+def check_exif(path, image: Image.Image) -> None:
+    """Raise MapError where a loaded image has more of EXIF than cameras write, because Pillow makes a number of two bytes."""
+    size = max(len(image.info.get(key, b"")) for key in ("exif", "Raw profile type exif"))
+    if size > MAX_EXIF:
+        raise MapError(path, f"the EXIF data have {size} bytes, expected at most {MAX_EXIF}")
 
 
 def check_jpeg(path, file: BinaryIO, width: int, height: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import os
 import warnings
 from collections.abc import Callable, Sequence
@@ -12,7 +13,7 @@ from PIL import Image, ImageFile, UnidentifiedImageError
 
 from pymoo_gridpath.errors import MapError, visible
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._declared import CountedReader, Tags, check_before, check_jpeg, check_png, nodata_of
+from pymoo_gridpath.maps._declared import CountedReader, Tags, check_before, check_exif, check_jpeg, check_png, nodata_of
 from pymoo_gridpath.maps._files import MAX_CELLS, blocks, check_size, check_unknown, make_grid, require_file, shorten, warn
 from pymoo_gridpath.maps._ros_yaml import yaml_of_image
 
@@ -64,7 +65,9 @@ class Pixels:
     def below(self, threshold: float, unseen: bool) -> np.ndarray:
         """Return where the mean of the channels, laid over white, is below a threshold; ``unseen`` where nothing is shown."""
         white = self.white if self.channels.ndim == 2 else 3 * self.white
-        dark = np.arange(white + 1) / white < threshold
+        # In whole numbers, so that a grey value equal to the threshold stays equal.
+        first, whole = _first_from(threshold, white), white * self.opaque
+        most = whole - _first_from(threshold, whole)
         height, width = self.channels.shape[:2]
         below = np.empty((height, width), dtype=bool)
         for rows in blocks(height, width):
@@ -73,15 +76,12 @@ class Pixels:
                 # Three times as fast as `sum`, whose inner loop would be over three values.
                 red, green, blue = np.moveaxis(shade, 2, 0)
                 shade = red.astype(np.uint32) + green + blue
-            below[rows] = dark[shade]
-            if self.alpha is not None:
+            if self.alpha is None:
+                below[rows] = shade < first
+            else:
                 alpha = self.alpha[rows]
+                below[rows] = alpha * (white - shade.astype(np.uint32)) > most
                 below[rows][alpha == 0] = unseen
-                # In whole numbers so that a grey value equal to the threshold stays equal.
-                mixed = np.nonzero((alpha != 0) & (alpha != self.opaque))
-                part = alpha[mixed].astype(np.uint32)
-                over_white = shade[mixed] * part + white * (self.opaque - part)
-                below[rows][mixed] = over_white / (white * self.opaque) < threshold
         return below
 
     def grey(self) -> np.ndarray:
@@ -148,7 +148,7 @@ def read_image(
     if not _is_fraction(threshold):
         raise MapError(path, f"the option threshold is {shorten(threshold)}, expected a number from 0 to 1")
     pixels = read_pixels(path)
-    occupied = pixels.below(threshold, unknown == "occupied")
+    occupied = pixels.below(float(threshold), unknown == "occupied")
     unseen = np.zeros_like(occupied) if pixels.alpha is None else pixels.alpha == 0
     if (described := yaml_of_image(path)) is not None:
         warn(
@@ -190,6 +190,7 @@ def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:
                     _check_cost(path, file, image)
                     turned = image.format == "TIFF" and tags.get(ORIENTATION, (1,))[0] in TURNS
                     image.load()
+                    check_exif(path, image)
                     # Pillow has turned a TIFF by now.
                     orientation = image.getexif().get(ORIENTATION, 1)
                     pixels = _decode(path, image, tags)
@@ -247,11 +248,11 @@ def _decode(path, image: Image.Image, tags: Tags) -> Pixels:
     low, high = 0, 0
     for rows in blocks(*shape):
         part = image.crop((0, rows.start, image.width, rows.stop))
-        values = np.asarray(part)
+        values = np.asarray(part) if wide or nodata is not None else np.empty(0)
         if own_alpha:
             if key is not None:
                 part.info["transparency"] = key
-            coloured = np.asarray(part.convert("RGBA"))
+            coloured = np.asarray(part if part.mode == "RGBA" else part.convert("RGBA"))
             channels[rows] = coloured[..., :3]
             alpha[rows] = coloured[..., 3]  # pyright: ignore[reportOptionalSubscript]
         elif wide:
@@ -278,6 +279,11 @@ def _decode(path, image: Image.Image, tags: Tags) -> Pixels:
 def _turned(pixels: Pixels, turn: Callable[[np.ndarray], np.ndarray]) -> Pixels:
     alpha = None if pixels.alpha is None else turn(pixels.alpha)
     return Pixels(turn(pixels.channels), pixels.white, alpha, pixels.opaque)
+
+
+def _first_from(threshold: float, white: int) -> int:
+    """Return the first whole number whose quotient by ``white`` is not below a threshold."""
+    return bisect.bisect_left(range(white + 1), True, key=lambda value: value / white >= threshold)
 
 
 def _is_fraction(value) -> bool:

@@ -281,6 +281,19 @@ def test_images_that_take_too_long_are_refused(tmp_path, write, refused, png, mo
     assert read_image(write("f.pgm", b"P5 50 20 255\n" + bytes(1000))).n_occupied == 1000
 
 
+def test_tags_and_exif_of_too_many_values_are_refused(write, refused, png, monkeypatch):
+    monkeypatch.setattr(_declared, "MAX_VALUES", 50)
+    refused(read_image, write("a.tif", grey_tiff(3, 1, bytes(3), t37500=(0,) * 51)), None, "tag 37500", "51 values")
+    nested = struct.pack("<HHHII", 1, 37500, 3, 999, 0)
+    data = grey_tiff(3, 1, bytes(3) + nested, t34665=(0,))
+    place = struct.pack("<HHI", 34665, 4, 1)
+    data = data.replace(place + bytes(4), place + struct.pack("<I", len(data) - len(nested)))
+    refused(read_image, write("b.tif", data), None, "tag 37500", "999 values")
+    monkeypatch.setattr(_declared, "MAX_EXIF", 103)
+    refused(read_image, write("c.png", png(1, 1, 8, 0, [b"\0"], (b"eXIf", b"II*\0" + bytes(96)))), None, "106 bytes", "EXIF")
+    assert read_image(write("d.png", png(1, 1, 8, 0, [b"\0"], (b"eXIf", b"II*\0" + bytes(90))))).n_occupied == 1
+
+
 def test_signed_pixels_are_refused(write, refused):
     data = grey_tiff(3, 1, bytes([255, 0, 100]), t339=(2,))
     refused(read_image, write("a.tif", data), None, "signed", "8 bits")
