@@ -80,6 +80,7 @@ class Capability:
 
     def takes(self, n_obj: int) -> bool:
         """Whether it takes problems of so many objectives."""
+        n_obj = checks.whole("n_obj", n_obj, 1)
         return self.min_objectives <= n_obj and (self.max_objectives is None or n_obj <= self.max_objectives)
 
 
