@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pymoo_gridpath import checks
+
 
 @dataclass(frozen=True)
 class Capability:
