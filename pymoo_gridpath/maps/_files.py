@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import reprlib
 import sys
 import warnings
 from pathlib import Path
@@ -19,9 +18,6 @@ MAX_CELLS = 100_000_000
 """The largest number of cells that a map may have."""
 
 UNKNOWN_CHOICES = ("occupied", "free")
-
-_repr = reprlib.Repr()
-_repr.maxlevel, _repr.maxstring = 2, 60
 
 
 def require_file(path: str | os.PathLike[str]) -> Path:
@@ -62,7 +58,7 @@ def warn(path: str | os.PathLike[str], message: str) -> None:
 
 def shorten(value: object) -> str:
     """Return a short representation for an error message, however large or nested the value is."""
-    return _repr.repr(value)
+    return checks.shown(value)
 
 
 def check_size(path: str | os.PathLike[str], width: int, height: int, line: int | None = None) -> None:

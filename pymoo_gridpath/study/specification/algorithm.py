@@ -83,7 +83,8 @@ class AlgorithmSpec:
         if self.algorithm not in (None, "exact"):
             set_fields(self, operators=canonical.operators(self.operators, ("operators",)))
             self._check_slots(str(self.algorithm))
-            set_fields(self, parameters=parameters(self.algorithm, {} if self.parameters is None else self.parameters, ("parameters",)))
+            given = {} if self.parameters is None else self.parameters
+            set_fields(self, parameters=parameters(self.algorithm, given, ("parameters",)))
 
     def _check_kind(self) -> None:
         owner = "exact" if self.algorithm == "exact" else "the preset" if self.preset else self.algorithm

@@ -186,7 +186,10 @@ class ProblemSpec:
 
 
 def _objectives(value: Any) -> tuple[str, ...]:
-    names: list[Any] = [value] if isinstance(value, str) else list(value) if isinstance(value, Iterable) else [None]
+    try:
+        names: list[Any] = [value] if isinstance(value, str) else checks.items("objectives", value, "names")
+    except GridPathError:
+        names = [None]
     if not all(isinstance(name, str) for name in names):
         raise StudyError(f"objectives is {values.show(value)}, expected a list of names", ("objectives",))
     try:
