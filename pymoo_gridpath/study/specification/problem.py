@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import MAX_CELLS
