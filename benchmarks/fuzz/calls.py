@@ -466,6 +466,7 @@ def _algorithms(w: World) -> dict[str, Call]:
         "StrengthTournament": (algorithms.StrengthTournament, {}),
         "reference_directions": (algorithms.reference_directions, {"n_obj": 3, "n_points": 20}),
         "capability_table": (algorithms.capability_table, {}),
+        "Capability.takes": (algorithms.CAPABILITIES["NSGA2"].takes, {"n_obj": 2}),
         "Capability": (algorithms.Capability, dict(vars(algorithms.CAPABILITIES["NSGA2"]))),
     }
 

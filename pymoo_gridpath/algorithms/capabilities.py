@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pymoo_gridpath import checks
+
 
 @dataclass(frozen=True)
 class Capability:
@@ -80,6 +82,7 @@ class Capability:
 
     def takes(self, n_obj: int) -> bool:
         """Whether it takes problems of so many objectives."""
+        n_obj = checks.whole("n_obj", n_obj, 1)
         return self.min_objectives <= n_obj and (self.max_objectives is None or n_obj <= self.max_objectives)
 
 

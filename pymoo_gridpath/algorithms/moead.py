@@ -10,6 +10,7 @@ from moocore import is_nondominated
 from pymoo.algorithms.moo.moead import MOEAD, default_decomp
 from scipy.spatial.distance import cdist
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms._arguments import check_whole
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators.individuals import ArrayPopulation
@@ -102,7 +103,8 @@ class SmoothMOEAD(MOEAD):
         batch_size: int | None = None,
         **kwargs,
     ):
-        ref_dirs = np.asarray(ref_dirs, dtype=float)
+        expected = "two or more reference directions as rows of finite numbers"
+        ref_dirs = checks.array("ref_dirs", ref_dirs, expected=expected, finite=True, error=CapabilityError).astype(float)
         if ref_dirs.ndim != 2 or len(ref_dirs) < 2:
             raise CapabilityError(f"MOEA/D needs two or more reference directions as rows, got shape {ref_dirs.shape}")
         given = {"n_replace": n_replace, "batch_size": batch_size, "n_neighbors": kwargs.get("n_neighbors")}

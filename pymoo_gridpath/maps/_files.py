@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import reprlib
 import sys
 import warnings
 from collections.abc import Iterator
@@ -29,9 +28,6 @@ _IS_BLANK = np.isin(np.arange(256), list(_BLANKS))
 
 BLOCK = 1 << 22
 """How many letters or values are looked at together, which bounds the memory that this takes."""
-
-_repr = reprlib.Repr()
-_repr.maxlevel, _repr.maxstring = 2, 60
 
 
 def require_file(path: str | os.PathLike[str]) -> Path:
@@ -100,7 +96,7 @@ def blocks(height: int, width: int) -> Iterator[slice]:
 
 def shorten(value: object) -> str:
     """Return a short representation for an error message, however large or nested the value is."""
-    return _repr.repr(value)
+    return checks.shown(value)
 
 
 def plain(number: int) -> str:

@@ -12,7 +12,7 @@ from matplotlib.ticker import AutoLocator, MaxNLocator, NullLocator
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.convergence import ConvergenceRecorder, common_reference_point
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.plotting import style
 
 Quantity = Literal["length", "vulnerability", "hypervolume"]
@@ -60,7 +60,7 @@ def plot_convergence(
     if not is_color_like(color):
         raise GridPathError(f"color is {checks.shown(color)}, expected a colour of matplotlib such as '#0072B2'")
     if label is not None:
-        checks.text("label", label)
+        label = visible(checks.text("label", label))
     style.check_axes(ax)
     recorders = as_recorders(history)
     evaluations, values = _common(recorders, _series(recorders, quantity, reference_point))

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision import NAMES
 from pymoo_gridpath.decision.trade_off import check_set
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.labels import place_labels
 
@@ -58,7 +58,7 @@ def plot_front(
     columns = _columns(check_set(trade_off), objectives)
     groups = style.by_path(trade_off, which)
     other = as_reference(trade_off, reference)
-    reference_label = checks.text("reference_label", reference_label)
+    reference_label = visible(checks.text("reference_label", reference_label))
     style.check_axes(ax)
     solid = len(columns) == 3
     if ax is not None and (ax.name == "3d") != solid:

@@ -255,11 +255,12 @@ class GridPathProblem(Problem):
         check_paths(paths)
         F = np.empty((len(paths), self.n_obj))
         for k, (objective, sums) in enumerate(zip(self.objectives, self._sums, strict=True)):
-            values = np.asarray(objective(paths, sums))
-            if values.shape != (len(paths),) or values.dtype.kind not in "biuf":
+            what = f"what the objective {shown(objective.name)} returned"
+            values = checks.array(what, objective(paths, sums), expected="one number a path")
+            if values.shape != (len(paths),):
                 raise GridPathError(
                     f"the objective {shown(objective.name)} returned values of shape {values.shape} for "
-                    f"{counted(len(paths), 'path')}, of type {values.dtype}, expected one number a path"
+                    f"{counted(len(paths), 'path')}, expected one number a path"
                 )
             F[:, k] = values
         if np.isnan(F).any():

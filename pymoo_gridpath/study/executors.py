@@ -97,6 +97,7 @@ class LocalProcesses(StudyExecutor):
         return self._pool.submit(fn, *args, **kwargs)
 
     def recover(self, error: BaseException) -> None:
+        checks.instance("error", error, BaseException)
         if not isinstance(error, BrokenExecutor):
             super().recover(error)
         self.abort()

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.errors import GridPathError, MapError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import load_map
 
@@ -105,7 +105,8 @@ def test_what_is_no_file_is_refused(tmp_path, refused):
     refused(load_map, tmp_path, None, "directory")
     refused(load_map, tmp_path / "no.yaml", None, "no such file")
     refused(load_map, tmp_path / "no", None, "no such file")
-    refused(load_map, "bad\0name.map", None, "no such file")
+    with pytest.raises(GridPathError, match=r"path is 'bad\\x00name.map', expected the path of a file"):
+        load_map("bad\0name.map")
     refused(load_map, "x" * 5000, None, "no such")
 
 

@@ -41,12 +41,12 @@ NAMES = ["integer", "binary", "mixed", "absolute", "cells"]
 
 
 class Dark(Objective):
-    """How much of a path lies to the left, with some cells that even pay for a visit."""
+    """How much of a path lies to the left, in cells that cost the less the farther right they are."""
 
     name = label = "dark"
 
     def field(self, grid):
-        return np.tile(5.0 - np.arange(grid.width), (grid.height, 1))
+        return np.tile(float(grid.width) - np.arange(grid.width), (grid.height, 1))
 
     def __call__(self, paths, sums):
         return paths.total(sums)
@@ -270,7 +270,7 @@ def test_arguments_out_of_range_are_refused():
         (lambda: PathMutation(ways="shift"), "ways is 'shift', expected a mapping"),
         (lambda: PathMutation(ways={"shift": "a"}), "shift is 'a', expected a number"),
         (lambda: ScalarizedSampling(noise=-1), "noise is -1"),
-        (lambda: path_operators(problem, "best"), "sampling is 'best', expected 'scalarized' or 'random'"),
+        (lambda: path_operators(problem, "best"), "sampling is 'best', expected one of scalarized, random"),
         (lambda: path_operators(Problem(n_var=2)), "of the class Problem, expected a path problem"),
         (lambda: paper_operators(Problem(n_var=2)), "of the class Problem, expected a path problem"),
         (lambda: default_operators(Problem(n_var=2)), "of the class Problem, expected a path problem"),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pymoo.core.algorithm import Algorithm
 from pymoo.core.duplicate import DefaultDuplicateElimination
 from pymoo.core.population import Population
 
@@ -168,10 +169,11 @@ def test_mutation_keeps_bounds_and_fixed_genes(seed):
 # -- bitwise and mixed --------------------------------------------------------------------------------------------------
 
 
-class Run:
+class Run(Algorithm):
     """As much of an algorithm as a rate schedule sees."""
 
     def __init__(self, perc):
+        super().__init__()
         self.termination = type("Termination", (), {"perc": perc})()
 
 

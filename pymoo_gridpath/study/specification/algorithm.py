@@ -83,14 +83,16 @@ class AlgorithmSpec:
         if self.algorithm not in (None, "exact"):
             set_fields(self, operators=canonical.operators(self.operators, ("operators",)))
             self._check_slots(str(self.algorithm))
-            set_fields(self, parameters=parameters(self.algorithm, self.parameters or {}, ("parameters",)))
+            given = {} if self.parameters is None else self.parameters
+            set_fields(self, parameters=parameters(self.algorithm, given, ("parameters",)))
 
     def _check_kind(self) -> None:
         owner = "exact" if self.algorithm == "exact" else "the preset" if self.preset else self.algorithm
         takes = {"exact": ("max_seconds", "max_labels"), "the preset": ("pop_size",)}
         known = takes.get(str(owner), ("pop_size", "smoothness", "operators", "parameters"))
         for key in ("pop_size", "smoothness", "operators", "parameters", "max_seconds", "max_labels"):
-            given = getattr(self, key) not in (None, "default")
+            value = getattr(self, key)
+            given = value is not None and not (isinstance(value, str) and value == "default")
             if given and key not in known:
                 raise StudyError(f"{owner} takes no {key}, only {' and '.join(known)}", (key,))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import MAX_CELLS
@@ -186,7 +187,10 @@ class ProblemSpec:
 
 
 def _objectives(value: Any) -> tuple[str, ...]:
-    names: list[Any] = [value] if isinstance(value, str) else list(value) if isinstance(value, Iterable) else [None]
+    try:
+        names: list[Any] = [value] if isinstance(value, str) else checks.items("objectives", value, "names")
+    except GridPathError:
+        names = [None]
     if not all(isinstance(name, str) for name in names):
         raise StudyError(f"objectives is {values.show(value)}, expected a list of names", ("objectives",))
     try:
