@@ -21,7 +21,8 @@ _MAX_FILES = 1000
 
 # Of a stream of C++, which knows neither ".inf" nor letters of other scripts nor blanks in front.
 _FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*", re.ASCII)
-_INT = re.compile(r"([-+]?)(?:0[xX]([\da-fA-F]+)|(0[0-7]*)|([1-9]\d*))\s*", re.ASCII)
+# A number of more than ten digits is beyond every limit, and Python converts no more than 4,300.
+_INT = re.compile(r"([-+]?)(?:0[xX]([\da-fA-F]+)|(0[0-7]*)|([1-9]\d{0,9}))\s*", re.ASCII)
 _MAX_INT = 2**31 - 1
 
 _BOOLS = {"y": True, "yes": True, "true": True, "on": True, "n": False, "no": False, "false": False, "off": False}

@@ -340,3 +340,8 @@ def test_messages_stay_short(write):
         with pytest.raises(MapError, match="the name of an image file") as caught:
             read_ros(path)
         assert len(caught.value.message) < 500
+
+
+@pytest.mark.parametrize("digits", ["9" * 10, "1" * 11, "9" * 5000, "0x" + "f" * 5000])
+def test_a_negate_of_too_many_digits_is_refused(ros, refused, digits):
+    refused(read_ros, ros(negate=digits), 4, "negate is", "0 or 1")
