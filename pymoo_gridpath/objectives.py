@@ -9,7 +9,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import GridPathError, nearest
 from pymoo_gridpath.fields import obstacle_potential
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.paths import TURN_UNIT
 
 
@@ -27,6 +27,8 @@ class Objective(ABC):
         What an axis of a figure says, with the unit.
     penalty_unit : float
         What a penalty of 1 adds to it: 1, or the objective's own step where it counts in larger ones.
+    local : bool
+        Whether the cost of a cell depends on its neighbourhood alone, so that `field_in` does not work out the whole field.
 
     Examples
     --------
@@ -49,10 +51,19 @@ class Objective(ABC):
     name: str
     label: str
     penalty_unit: float = 1.0
+    local: bool = False
 
     def field(self, grid: OccupancyGrid) -> np.ndarray | None:
         """Return the cost of each cell, shape (height, width), if the objective is a sum over visited cells, else None."""
         return None
+
+    def field_in(self, grid: OccupancyGrid, box: Box) -> np.ndarray | None:
+        """Return the cost of each cell in a box, shape (height, width) of the box, or None.
+
+        What `field` says of these cells. Override it too where that can be had without the cost of all other cells.
+        """
+        whole = self.field(grid)
+        return whole if whole is None or box == grid.whole else np.asarray(whole)[box.slices]
 
     @abstractmethod
     def __call__(self, paths, sums: np.ndarray | None) -> np.ndarray:
@@ -111,6 +122,15 @@ class Vulnerability(Objective):
 
     def field(self, grid):
         return obstacle_potential(grid, self.variance)
+
+    @property
+    def local(self) -> bool:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Whether the field is that of this class: one made from it may have another."""
+        return type(self).field is Vulnerability.field
+
+    def field_in(self, grid, box):
+        """Return the potential in a box, from the obstacles in reach."""
+        return obstacle_potential(grid, self.variance, box) if self.local else super().field_in(grid, box)
 
     def __call__(self, paths, sums):
         return paths.total(sums)

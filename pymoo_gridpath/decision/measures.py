@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
+from pymoo_gridpath.fields import BoxedField
 from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.representations.base import representation_of
 
@@ -23,7 +26,7 @@ class PathMeasures:
 
     Attributes
     ----------
-    field : numpy.ndarray, shape (height, width)
+    field : numpy.ndarray, shape (height, width) of the representation's box
         The potential whose sum is the vulnerability.
     """
 
@@ -32,8 +35,11 @@ class PathMeasures:
         given = [objective for objective in problem.objectives if isinstance(objective, Vulnerability)]
         self.problem = problem
         self._objective = given[0] if given else Vulnerability()
-        self.field = self._objective.field(problem.grid)
-        self._sums = problem.representation.prepare(self.field)
+        grid, box = problem.grid, problem.representation.box
+        self.field = self._objective.field_in(grid, box)
+        whole = box == grid.whole
+        field = self.field if whole else BoxedField(self.field, box, grid.width, partial(self._objective.field, grid))
+        self._sums = problem.representation.prepare(field)
 
     def vulnerability(self, paths) -> np.ndarray:
         """Return the vulnerability of N paths, shape (N,)."""

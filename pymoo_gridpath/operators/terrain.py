@@ -28,7 +28,7 @@ def terrain_of(problem) -> Terrain:
     """
     if problem not in _TERRAINS:
         representation = representation_of(problem)
-        fields = [objective.field(problem.grid) for objective in problem.objectives]
+        fields = [objective.field_in(problem.grid, representation.box) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)
         _TERRAINS[problem] = make_terrain(moves, start, goal, [field for field in fields if field is not None])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import warnings
 from collections.abc import Sequence
 from numbers import Real
@@ -13,7 +14,8 @@ from pymoo.core.problem import Problem
 from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.frame import Axis
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.fields import BoxedField
+from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.objectives import Objective, Turn, make_objectives
 from pymoo_gridpath.representations import CellSequence, Representation, make_representation
 
@@ -131,7 +133,8 @@ class GridPathProblem(Problem):
         self.penalty = float(given)
         self.potential_limit = potential_limit
         self._check_obstacles()
-        fields = [_checked(objective, grid) for objective in self.objectives]
+        box = grid.box_of(self.start)
+        fields = [_field(objective, grid, box) for objective in self.objectives]
         if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
             # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
             costs = [field for field in fields if field is not None]
@@ -275,6 +278,13 @@ class GridPathProblem(Problem):
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         paths = self.decode(X)
         return self.score(paths), paths.turn, paths.interfering_cells
+
+
+def _field(objective: Objective, grid: OccupancyGrid, box: Box) -> np.ndarray | BoxedField | None:
+    """Return the field of an objective, that of a local one in a box only."""
+    if not objective.local or box == grid.whole:
+        return _checked(objective, grid)
+    return BoxedField(objective.field_in(grid, box), box, grid.width, functools.partial(objective.field, grid))
 
 
 def _checked(objective: Objective, grid: OccupancyGrid) -> np.ndarray | None:

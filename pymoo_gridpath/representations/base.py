@@ -11,7 +11,7 @@ import numpy as np
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.frame import Axis, MonotoneFrame
-from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.grid import Box, Cell, OccupancyGrid
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
 from pymoo_gridpath.search.moves import HEADINGS, Moves
 from pymoo_gridpath.search.sequences import Sequences
@@ -44,10 +44,15 @@ class Representation(ABC):
     start: Cell
     goal: Cell
 
+    @functools.cached_property
+    def box(self) -> Box:
+        """The part of the grid in which legal paths lie, see `OccupancyGrid.box_of`; searches work on it alone."""
+        return self.grid.box_of(self.start)
+
     @property
     @abstractmethod
     def moves(self) -> Moves:
-        """The legal steps of the paths that can be coded."""
+        """The legal steps of the paths that can be coded, in the `box`."""
 
     @abstractmethod
     def from_sequences(self, sequences: Sequences) -> np.ndarray:
@@ -56,7 +61,7 @@ class Representation(ABC):
         Parameters
         ----------
         sequences : Sequences
-            N paths from the start to the goal.
+            N paths from the start to the goal, by the indices of cells that `moves` has.
 
         Returns
         -------
@@ -82,9 +87,14 @@ class Representation(ABC):
         Returns
         -------
         Sequences
-            N paths; no cell follows itself.
+            N paths, by the indices of cells that `moves` has, -1 for those outside the box; no cell follows itself but these.
         """
-        return self.decode(X).sequences
+        return self._in_box(self.decode(X))
+
+    def _in_box(self, paths) -> Sequences:
+        """Return the cells that decoded paths visit by the indices that `moves` has."""
+        cells, offsets = paths.sequences
+        return Sequences(self.moves.from_grid(cells), offsets)
 
     @abstractmethod
     def decode(self, X: np.ndarray) -> ColumnPaths | CellPaths:
@@ -199,18 +209,19 @@ class MonotoneRepresentation(Representation):
         If these lose the cost of a cell, as those of cheap cells beside dear ones, it is returned by the index of the cell, in
         float, shape (height * width,).
         """
+        field = np.asarray(field)
         with np.errstate(invalid="ignore", over="ignore"):
             sums = self.frame.prefix_sums(field)
             if np.array_equal(np.diff(sums, axis=1), self.frame.columns(field)):
                 return sums
-        return np.asarray(field, dtype=float).ravel()
+        return field.astype(float, copy=False).ravel()
 
     @functools.cached_property
     def moves(self) -> Moves:
         """The legal steps along the five headings that do not go back: forward, diagonally forward, and across."""
         k = 0 if self.frame.axis == "x" else 1
         forward = np.sign(self.goal[k] - self.start[k]) * HEADINGS[:, k] >= 0
-        return Moves(self.grid, np.flatnonzero(forward).tolist())
+        return Moves(self.grid, np.flatnonzero(forward).tolist(), self.box)
 
     def from_sequences(self, sequences: Sequences) -> np.ndarray:
         """Return the rows of genes that code paths given by the cells that they visit.
@@ -236,7 +247,7 @@ class MonotoneRepresentation(Representation):
     def _column_paths(self, sequences: Sequences) -> ColumnPaths:
         """Return the paths that enter and leave each column where the given ones do."""
         frame, shape = self.frame, (len(sequences.lengths), self.frame.n_columns)
-        check_ends(sequences, self)
+        check_ends(sequences, self, self.moves.index(self.start), self.moves.index(self.goal))
         column, row = frame.from_cells(self.moves.cells(sequences.cells))
         first = np.zeros(len(column), dtype=bool)
         first[sequences.offsets[:-1]] = True
@@ -313,9 +324,8 @@ class MonotoneRepresentation(Representation):
         """Return X with the genes changed where ``fixed`` moves differ from ``moves``."""
 
 
-def check_ends(sequences: Sequences, representation: Representation) -> None:
-    """Raise GridPathError if a path does not lead from the start to the goal of a representation."""
-    first, last = (representation.moves.index(cell) for cell in (representation.start, representation.goal))
+def check_ends(sequences: Sequences, representation: Representation, first: int, last: int) -> None:
+    """Raise GridPathError if a path does not lead from the start to the goal of a representation, the cells first and last."""
     cells, offsets, lengths = *sequences, sequences.lengths
     if (lengths < 1).any() or (cells[offsets[:-1]] != first).any() or (cells[offsets[1:] - 1] != last).any():
         raise GridPathError(

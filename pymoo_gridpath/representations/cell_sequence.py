@@ -14,8 +14,8 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.fields import obstacle_potential
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.fields import BoxedField, obstacle_potential
+from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.paths import CellPaths
 from pymoo_gridpath.representations.base import Representation, check_ends
 from pymoo_gridpath.search.moves import Moves
@@ -93,17 +93,17 @@ class CellSequence(Representation):
         self.start, self.goal = grid.check_query(start, goal)
         if not (isinstance(spare, Real) and 1.0 <= spare < math.inf):
             raise GridPathError(f"spare is {spare!r}, expected a factor of 1 or more")
-        self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells, fields, spare)
+        self.max_cells = _room(self, max_cells, fields, spare)
         self.n_var = self.max_cells
         self.xl = np.zeros(self.n_var, dtype=int)
-        self.xu = np.full(self.n_var, self.moves.n_cells - 1)
-        self.xl[0] = self.xu[0] = self.moves.index(self.start)
-        self.xl[-1] = self.xu[-1] = self.moves.index(self.goal)
+        self.xu = np.full(self.n_var, grid.occupied.size - 1)
+        self.xl[0] = self.xu[0] = self.start[1] * grid.width + self.start[0]
+        self.xl[-1] = self.xu[-1] = self.goal[1] * grid.width + self.goal[0]
 
     @functools.cached_property
     def moves(self) -> Moves:
         """The legal steps, along all eight headings."""
-        return Moves(self.grid)
+        return Moves(self.grid, box=self.box)
 
     def decode(self, X: np.ndarray) -> CellPaths:
         """Return the paths that the rows of X code.
@@ -122,7 +122,7 @@ class CellSequence(Representation):
 
     def encode(self, paths) -> np.ndarray:
         """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""
-        return self.from_sequences(paths.sequences)
+        return self._rows(paths.sequences)
 
     def fits(self, sequences: Sequences) -> np.ndarray:
         """Return which paths have no more cells than a row has genes, bool, shape (N,)."""
@@ -146,13 +146,17 @@ class CellSequence(Representation):
         GridPathError
             If a path leads from or to another cell, or has more than ``max_cells`` cells even without loops.
         """
-        check_ends(sequences, self)
+        return self._rows(Sequences(self.moves.to_grid(sequences.cells), sequences.offsets))
+
+    def _rows(self, sequences: Sequences) -> np.ndarray:
+        """Return the rows of genes that code paths given by the indices of cells in the whole grid."""
+        check_ends(sequences, self, int(self.xl[0]), int(self.xl[-1]))
         fits = self.fits(sequences)
         if fits.all():
             return self._padded(sequences)
         X = np.empty((len(fits), self.n_var), dtype=np.int64)
         X[fits] = self._padded(sequences.take(fits))
-        X[~fits] = self._padded(cut_loops(sequences.take(~fits), self.moves.n_cells))
+        X[~fits] = self._padded(cut_loops(sequences.take(~fits), self.grid.occupied.size))
         return X
 
     def _padded(self, sequences: Sequences) -> np.ndarray:
@@ -167,8 +171,10 @@ class CellSequence(Representation):
         X[np.arange(self.n_var) < lengths[:, None]] = sequences.cells
         return X
 
-    def prepare(self, field: np.ndarray) -> np.ndarray:
+    def prepare(self, field: np.ndarray | BoxedField) -> np.ndarray | BoxedField:
         """Return a field over the grid by the index of the cell, shape (height * width,)."""
+        if isinstance(field, BoxedField):
+            return field
         field = np.asarray(field)
         if field.shape != self.grid.shape:
             raise GridPathError(f"a field has shape {field.shape}, expected {self.grid.shape}, the (height, width) of the grid")
@@ -196,13 +202,15 @@ class CellSequence(Representation):
         repaired[~broken] = self.encode(paths[~broken])
         if broken.any():
             ends = self.moves.index(self.start), self.moves.index(self.goal)
-            repaired[broken] = self.from_sequences(mend(paths[broken].sequences, self.moves, *ends, self.max_cells))
+            repaired[broken] = self.from_sequences(mend(self._in_box(paths[broken]), self.moves, *ends, self.max_cells))
         return repaired
 
 
-def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fields, spare: float) -> int:
+def _room(coding: CellSequence, max_cells: int | None, fields, spare: float) -> int:
     """Return ``max_cells``, checked, or its default."""
-    graph = grid.move_graph()
+    grid, box = coding.grid, coding.box
+    start, goal = coding.moves.index(coding.start), coding.moves.index(coding.goal)
+    graph = grid.crop(box).move_graph()
     _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
     least = 1
     cell = goal
@@ -210,9 +218,9 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
         cell = before[cell]
         least += 1
     if max_cells is None:
-        reachable = np.count_nonzero(grid.regions == grid.regions.flat[start])
-        fields = [np.maximum(field, 0.0) for field in fields] or [obstacle_potential(grid)]
-        fields = [field / (field.max() or 1.0) for field in fields]
+        regions = grid.regions[box.slices]
+        reachable = np.count_nonzero(regions == regions.flat[start])
+        fields = [_scaled(field, box, alone=len(fields) == 1) for field in fields] or [obstacle_potential(grid, box=box)]
         # Of several together, too: a path that costs nothing in either may be longer than those that cost nothing in one.
         sizes = range(1, 1 + (len(fields) if len(fields) <= _MOST_TOGETHER else 1))
         together = (np.sum(some, axis=0) for n in sizes for some in itertools.combinations(fields, n))
@@ -227,6 +235,19 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
             f"max_cells is {max_cells!r}, expected a whole number of at least {least}, the cells of a shortest path"
         )
     return given
+
+
+def _scaled(field: np.ndarray | BoxedField, box: Box, alone: bool) -> np.ndarray:
+    """Return the part of a field in a box, without negative costs, relative to the largest one of the whole grid.
+
+    Where it stands ``alone``, the scale does not matter, and no other part need be known.
+    """
+    if isinstance(field, BoxedField) and alone:
+        inside = whole = field.inside
+    else:
+        whole = np.asarray(field)
+        inside = whole[box.slices]
+    return np.maximum(inside, 0.0) / (max(whole.max(), 0.0) or 1.0)
 
 
 def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal: int) -> float:
