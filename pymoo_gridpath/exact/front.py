@@ -106,7 +106,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
     if moves.n_cells >= _MOST_CELLS:
         raise CapabilityError(
-            f"the part of the grid that can be reached has {moves.n_cells:,} cells, expected fewer than {_MOST_CELLS:,} for an exact front"
+            f"{moves.n_cells:,} cells of the grid are to be searched, expected fewer than {_MOST_CELLS:,} for an exact front"
         )
     meter = Meter(budget or Budget())
     usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)

@@ -13,8 +13,8 @@ from pymoo.core.problem import Problem
 
 from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
-from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.fields import BoxedField
+from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.objectives import Objective, Turn, make_objectives
 from pymoo_gridpath.representations import CellSequence, Representation, make_representation

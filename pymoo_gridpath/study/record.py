@@ -194,11 +194,18 @@ def read_meta(data: bytes) -> dict[str, Any]:
         raise DamagedRecordError("the run does not end with its checksum, expected a file that was written to its end")
     if hashlib.sha256(memoryview(data)[:size]).hexdigest().encode() != data[size + len(_SEAL) :]:
         raise DamagedRecordError("the run does not match its checksum, expected the bytes that were written")
-    # The header of the first member of a zip archive, section 4.3.7 of its specification.
-    *_, length, name, extra = struct.unpack_from("<4s5H3L2H", data)
-    begin = 30 + name + extra
-    meta = json.loads(data[begin : begin + length])
-    if meta["format"] > FORMAT:
+    try:
+        # The header of the first member of a zip archive, section 4.3.7 of its specification.
+        *_, length, name, extra = struct.unpack_from("<4s5H3L2H", data)
+        begin = 30 + name + extra
+        meta = json.loads(data[begin : begin + length])
+        missing = {"format", "key", "status", "message", "complete", "versions", "dtype"} - set(meta)
+        later = not missing and meta["format"] > FORMAT
+    except (struct.error, ValueError, TypeError):
+        raise DamagedRecordError("the run has a checksum and no description, expected what a study writes") from None
+    if missing:
+        raise DamagedRecordError(f"the run does not say its {sorted(missing)[0]}, expected what a study writes")
+    if later:
         raise GridPathError(
             f"the run {meta['key']} has format {meta['format']}, expected at most {FORMAT}; a later pymoo_gridpath wrote it"
         )
