@@ -337,8 +337,8 @@ class OccupancyGrid:
         """Return the part of the grid that is enough to plan paths from a cell.
 
         It holds all cells that can be reached from the free cell, and one more on each side, so that every obstacle which is
-        the nearest one of a reachable cell lies in it. A large grid of which little can be reached takes no more time and memory
-        so than a small one. Of any other grid it is the whole.
+        the nearest one of a reachable cell lies in it. A large grid of which little can be reached so takes no more time and
+        memory than a small one. Of any other grid it is the whole.
         """
         x, y = start
         if self._occupied.size < _LEAST_BOXED or self._occupied[y, x]:

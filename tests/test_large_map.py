@@ -85,7 +85,7 @@ def test_exact_fronts_and_paths_are_those_of_the_room_alone(representation, obje
     assert a.complete and b.complete and len(a.F) >= 1
     np.testing.assert_array_equal(a.F, b.F)
     for near, far in zip(cells_of(one, a.X), cells_of(other, b.X), strict=True):
-        np.testing.assert_array_equal(near + (X0, Y0), far)
+        np.testing.assert_array_equal(near + moved((0, 0)), far)
     # What a score says is what the whole grid says.
     np.testing.assert_array_equal(other.evaluate(b.X).reshape(-1, other.n_obj), b.F)
 

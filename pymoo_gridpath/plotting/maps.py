@@ -151,7 +151,7 @@ def _points(record, units: Units) -> np.ndarray:
 
 
 def _draw_cells(ax: Axes, grid: OccupancyGrid, field: np.ndarray | None, units: Units, box: Box | None = None) -> None:
-    """Draw the cells as one image and set the limits of the Axes to the grid's edge; of a larger grid, it is what is in a box."""
+    """Draw the cells as one image and set the limits of the Axes to the grid's edge; the grid may be a box of a larger one."""
     colors = LinearSegmentedColormap.from_list("potential", style.POTENTIAL)
     top = 0.0 if field is None else field[~grid.occupied].max(initial=0.0)
     share = np.zeros(grid.shape) if field is None or top <= 0 else np.clip(field / top, 0.0, 1.0)
