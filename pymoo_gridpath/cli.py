@@ -20,6 +20,7 @@ from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
+from pymoo_gridpath.memory import is_want_of_memory, needed, want_of_memory
 from pymoo_gridpath.progress import Progress, say_that_it_compiles
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.commands import add_study_commands
@@ -48,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="backslashreplace")
     arguments = _parser().parse_args(_join_cells(sys.argv[1:] if argv is None else argv))
     try:
-        code = arguments.run(arguments)
+        code = _carry_out(arguments)
         sys.stdout.flush()
         return code
     except GridPathError as error:
@@ -68,6 +69,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"pymoo-gridpath: the output cannot be written: {error.strerror or error}{where}", file=sys.stderr)
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_BAD_INPUT
+
+
+def _carry_out(arguments) -> int:
+    """Run the command, and make a sentence of want of memory."""
+    try:
+        return arguments.run(arguments)
+    except Exception as error:
+        if not is_want_of_memory(error):
+            raise
+        # Without what the frames of the error hold.
+        sentence = want_of_memory(getattr(arguments, "needs", ""))
+    raise GridPathError(sentence)
 
 
 # -- arguments ----------------------------------------------------------------------------------------------------------
@@ -203,11 +216,13 @@ def _plan(arguments) -> int:
     grid, known = _load(arguments.map or DEFAULT_MAP, arguments)
     start, goal = _query(arguments, grid, known)
     grid = _inflate(grid, arguments.radius, start, goal)
+    representation = arguments.representation or _default_representation(grid, arguments.axis)
+    arguments.needs = _needed(grid, start, representation, arguments)
     problem = GridPathProblem(
         grid,
         start,
         goal,
-        representation=arguments.representation or _default_representation(grid, arguments.axis),
+        representation=representation,
         objectives=arguments.objectives,
         obstacles=arguments.obstacles or "penalty",
         penalty=arguments.penalty,
@@ -326,6 +341,13 @@ def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None
 def _default_representation(grid: OccupancyGrid, axis: str) -> str:
     """Return the coding for any path, or the paper's in the paper's world and where paths advance along an axis."""
     return "integer" if grid.corner_cutting or axis != "auto" else "cells"
+
+
+def _needed(grid: OccupancyGrid, start, representation: str, arguments) -> str:
+    """Return what a plan costs in memory, in words."""
+    height, width = grid.box_of(start).shape
+    exact = (arguments.algorithm or "").lower() == "exact"
+    return needed(representation, height * width, exact, "turn" in arguments.objectives, f"{width} x {height}")
 
 
 def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:

@@ -111,7 +111,7 @@ def read_pixels(path: str | os.PathLike[str]) -> Pixels:
             with Image.open(path, formats=FORMATS) as image:
                 check_size(path, *image.size)  # before decoding
                 return _decode(path, image)
-        except MapError:
+        except (MapError, MemoryError):
             raise
         except (Image.DecompressionBombError, Image.DecompressionBombWarning):
             raise MapError(path, f"the image is too large, expected at most {Image.MAX_IMAGE_PIXELS} pixels") from None
