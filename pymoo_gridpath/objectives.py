@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 
@@ -185,7 +186,7 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
     for item in objectives:
         if isinstance(item, str):
             if item not in OBJECTIVES:
-                raise GridPathError(f"there is no objective {item!r}; {nearest(item, OBJECTIVES)}")
+                raise GridPathError(f"there is no objective {reprlib.repr(item)}; {nearest(item, OBJECTIVES)}")
             item = OBJECTIVES[item]()
         elif not isinstance(item, Objective):
             raise GridPathError(f"objective {item!r} is neither a name nor an Objective")
@@ -194,5 +195,5 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
         made.append(item)
     names = [item.name for item in made]
     if not names or len(set(names)) < len(names):
-        raise GridPathError(f"objectives are {names}, expected one or more, each once")
+        raise GridPathError(f"objectives are {reprlib.repr(names)}, expected one or more, each once")
     return tuple(made)

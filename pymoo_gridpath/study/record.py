@@ -7,6 +7,7 @@ import io
 import json
 import struct
 import zipfile
+import zlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -168,17 +169,20 @@ def from_bytes(data: bytes, genes: bool = True) -> RunRecord:
         If the bytes are not what was written.
     """
     meta = read_meta(data)
-    kind = np.dtype(meta.pop("dtype"))
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        arrays = {
-            name.removesuffix(".npy"): np.lib.format.read_array(io.BytesIO(archive.read(name)), allow_pickle=False)
-            for name in archive.namelist()
-            if name != _META and (genes or name != "X.npy")
-        }
-    history = _unpacked(arrays) if "records" in arrays else None
     del meta["format"]
-    X = arrays["X"].astype(kind, copy=False) if genes else np.empty((len(arrays["F"]), 0), dtype=kind)
-    return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history)
+    try:
+        kind = np.dtype(meta.pop("dtype"))
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            arrays = {
+                name.removesuffix(".npy"): np.lib.format.read_array(io.BytesIO(archive.read(name)), allow_pickle=False)
+                for name in archive.namelist()
+                if name != _META and (genes or name != "X.npy")
+            }
+        history = _unpacked(arrays) if "records" in arrays else None
+        X = arrays["X"].astype(kind, copy=False) if genes else np.empty((len(arrays["F"]), 0), dtype=kind)
+        return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history)
+    except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, TypeError):
+        raise DamagedRecordError("the run has a checksum and no arrays, expected what a study writes") from None
 
 
 def read_meta(data: bytes) -> dict[str, Any]:

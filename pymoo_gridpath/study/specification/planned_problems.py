@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
-from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.maps import load_map, map_format, read_scen, read_text_header, shipped_maps
+from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.build import build_grid, pack_grid
 from pymoo_gridpath.study.plan import PlannedProblem, run_key
 from pymoo_gridpath.study.specification import canonical
