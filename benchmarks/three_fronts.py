@@ -43,7 +43,7 @@ def main() -> None:
     arguments = parser.parse_args()
     grid = random_dense_grid(32, 0.16, arguments.seed)
     problem = GridPathProblem(grid, (0, 0), (31, 31))
-    exact: Any = problem.pareto_front()
+    exact: Any = problem.pareto_front(max_seconds=600.0)
     paper_result = minimize(*ahmed_deb_2013(grid, (0, 0), (31, 31), n_gen=arguments.n_gen), seed=arguments.seed)
     aware = make_algorithm("NSGA2", problem, pop_size=100, operators=path_operators(problem, "random"))
     aware_result = minimize(problem, aware, ("n_eval", 10_000), seed=arguments.seed)

@@ -35,6 +35,8 @@ nb_execution_timeout = 300
 # Cells may write files.
 nb_execution_in_temp = True
 nb_merge_streams = True
+# That kernels are compiled, which depends on what was built before.
+nb_output_stderr = "remove"
 nb_render_markdown_format = "myst"
 
 # -- reference, from the docstrings ----------------------------------------------------------------------------------------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import io
 import os
 import re
@@ -15,14 +14,15 @@ from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.argument_types import folder, positive
-from pymoo_gridpath.compiled import COMPILED, is_ctrl_c, on_compiling
-from pymoo_gridpath.errors import GridError, GridPathError
+from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
+from pymoo_gridpath.errors import GridError, GridPathError, counted, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
 from pymoo_gridpath.memory import is_want_of_memory, needed, want_of_memory
-from pymoo_gridpath.progress import Progress, say_that_it_compiles
-from pymoo_gridpath.representations import REPRESENTATIONS
+from pymoo_gridpath.progress import Progress, say, warnings_as_lines
+from pymoo_gridpath.representations import REPRESENTATIONS, default_representation
 from pymoo_gridpath.study.commands import add_study_commands
 
 DEFAULT_MAP = "warehouse"
@@ -47,18 +47,20 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             # A terminal or pipe that lacks a letter of a map's name shows its number instead.
             stream.reconfigure(errors="backslashreplace")
-    arguments = _parser().parse_args(_join_cells(sys.argv[1:] if argv is None else argv))
+    given = sys.argv[1:] if argv is None else checks.names("argv", argv)
+    arguments = _parser().parse_args(_join_cells(given))
     try:
-        code = _carry_out(arguments)
+        with warnings_as_lines():
+            code = _carry_out(arguments)
         sys.stdout.flush()
         return code
     except GridPathError as error:
-        print(f"pymoo-gridpath: {error}", file=sys.stderr)
+        say(error)
         return EXIT_BAD_INPUT
     except (KeyboardInterrupt, SystemError) as error:
         if not is_ctrl_c(error):
             raise
-        print("pymoo-gridpath: interrupted", file=sys.stderr)
+        say("interrupted")
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         # The reader has gone; keep the interpreter from complaining when it flushes.
@@ -66,7 +68,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return EXIT_OK
     except OSError as error:
         where = f" ({error.filename})" if error.filename else ""
-        print(f"pymoo-gridpath: the output cannot be written: {error.strerror or error}{where}", file=sys.stderr)
+        say(f"the output cannot be written: {error.strerror or error}{where}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_BAD_INPUT
 
@@ -89,7 +91,7 @@ def _carry_out(arguments) -> int:
 class _Parser(argparse.ArgumentParser):
     def error(self, message):
         """Say what was wrong in one line."""
-        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {visible(message)} (see {self.prog} --help)\n")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -208,6 +210,7 @@ def _plan(arguments) -> int:
     # Imported late, since `maps`, `info` and --help do without.
     from pymoo_gridpath.algorithms import ExactFront, make_algorithm
     from pymoo_gridpath.convergence import ConvergenceRecorder
+    from pymoo_gridpath.decision.provenance import describe_source
     from pymoo_gridpath.plotting import save_figures
     from pymoo_gridpath.problems import GridPathProblem
 
@@ -215,8 +218,10 @@ def _plan(arguments) -> int:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
     grid, known = _load(arguments.map or DEFAULT_MAP, arguments)
     start, goal = _query(arguments, grid, known)
+    # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
+    unknown, source = _unknown(grid), describe_source(grid)
     grid = _inflate(grid, arguments.radius, start, goal)
-    representation = arguments.representation or _default_representation(grid, arguments.axis)
+    representation = arguments.representation or default_representation(grid.corner_cutting, arguments.axis)
     arguments.needs = _needed(grid, start, representation, arguments)
     problem = GridPathProblem(
         grid,
@@ -247,35 +252,35 @@ def _plan(arguments) -> int:
         )
     _make_directory(arguments.output)
 
-    print(f"{grid.name}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
+    print(f"{visible(grid.name)}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
+    if unknown is not None:
+        print(f"unknown: {unknown}", flush=True)
     with _StopOnCtrlC() as stop:
         results = _search(problem, algorithm, arguments, stop)
         stop.searching = False
         if not any(len(result.pop) for result in results):
-            print(f"pymoo-gridpath: no path was found: {results[0].message}", file=sys.stderr)
+            say(f"no path was found: {results[0].message}")
             return EXIT_NO_PATH
-        trade_off, files = _write_paths(results, arguments, name, stop.requested)
+        trade_off, files = _write_paths(results, arguments, name, source, stop.requested)
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
     elif results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
     print(trade_off.table(max_rows=MAX_ROWS))
-    x, y = goal
-    print(f"for comparison, the shortest of all paths on this grid has length {grid.shortest_lengths(start)[y, x]:.3f}")
+    if trade_off.advice:
+        say(trade_off.advice)
     if len(results) > 1:
         print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
-    print("written: " + ", ".join(str(file) for file in files), flush=True)
+    print("written: " + ", ".join(visible(file) for file in files), flush=True)
     history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
     figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
-    print("figures: " + ", ".join(str(file) for file in figures))
+    print("figures: " + ", ".join(visible(file) for file in figures))
     if stop.requested:
         return EXIT_INTERRUPTED
     if not trade_off.feasible:
-        print(
-            "pymoo-gridpath: no legal path was found; a larger --pop-size, more --generations or --runs, or "
-            "--obstacles constraint may find one",
-            file=sys.stderr,
+        say(
+            "no legal path was found; a larger --pop-size, more --generations or --runs, or --obstacles constraint may find one"
         )
         return EXIT_NO_PATH
     return EXIT_OK
@@ -303,13 +308,14 @@ def _info(arguments) -> int:
         "resolution": f"{grid.resolution:g} m a cell",
         "origin": f"x {x:g} m, y {y:g} m, yaw {yaw:g} rad, the corner of cell 0,0",
         "occupied": f"{occupied} cells, {occupied / grid.occupied.size:.1%}",
+        **({} if (unknown := _unknown(grid)) is None else {"unknown": unknown}),
         "free regions": f"{len(sizes)}" + (f", the largest of {sizes.max()} cells" if len(sizes) else ""),
         "corners": "may be cut" if grid.corner_cutting else "may not be cut",
     }
     if known and known.start and known.goal:
         rows["query"] = f"from {_text(known.start)} to {_text(known.goal)}, robot radius {known.radius or 0:g} m"
     for key, value in rows.items():
-        print(f"{key:<13} {value}")
+        print(f"{key:<13} {visible(value)}")
     return EXIT_OK
 
 
@@ -325,6 +331,15 @@ def _load(name: str, arguments) -> tuple[OccupancyGrid, ShippedMap | TextHeader 
     return grid, read_text_header(name) if map_format(name) == "a plain text map" else None
 
 
+def _unknown(grid: OccupancyGrid) -> str | None:
+    """Return in words how many cells of a map as read are unknown and what they count as; None if its kind knows none."""
+    if grid.unknown is None:
+        return None
+    n = int(grid.unknown.sum())
+    meaning = ("occupied" if grid.occupied[grid.unknown].all() else "free") if n else ""
+    return counted(n, "cell") + (f", {n / grid.unknown.size:.1%}, taken as {meaning}" if n else "")
+
+
 def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None):
     """Return start and goal, by default those that the map names, checked on the map as it was read."""
     start = arguments.start or (known and known.start)
@@ -336,11 +351,6 @@ def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None
             f"(bottom) to {grid.height - 1}"
         )
     return grid.check_query(start, goal)
-
-
-def _default_representation(grid: OccupancyGrid, axis: str) -> str:
-    """Return the coding for any path, or the paper's in the paper's world and where paths advance along an axis."""
-    return "integer" if grid.corner_cutting or axis != "auto" else "cells"
 
 
 def _needed(grid: OccupancyGrid, start, representation: str, arguments) -> str:
@@ -379,8 +389,7 @@ def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
         progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
         return stop.requested
 
-    say = on_compiling(say_that_it_compiles) if _searches_in_kernels(problem, algorithm) else contextlib.nullcontext()
-    with Progress(arguments.runs, arguments.generations) as progress, say:
+    with Progress(arguments.runs, arguments.generations) as progress:
         if isinstance(algorithm, ExactFront):
             algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)
             return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)
@@ -392,17 +401,14 @@ def _found_legal(result) -> bool:
     return bool(np.any(np.asarray(result.pop.get("interfering_cells")) == 0))
 
 
-def _write_paths(results, arguments, name: str, interrupted: bool):
+def _write_paths(results, arguments, name: str, source: dict, interrupted: bool):
     """Return the trade-off set of the runs, and the files that it was written to."""
     from pymoo_gridpath.decision import TradeOffSet
-    from pymoo_gridpath.decision.provenance import grid_digest
 
-    source = _load(arguments.map or DEFAULT_MAP, arguments)[0]
     settings = {
         "algorithm": {"name": name},
         "robot_radius": arguments.radius,
-        # The map that was planned on is the one grown by the radius.
-        "source_map": {"occupied_cells": source.n_occupied, "sha256": grid_digest(source)},
+        "source_map": source,
         "interrupted": interrupted,
     }
     trade_off = TradeOffSet.from_results(results, settings=settings)

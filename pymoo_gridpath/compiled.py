@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
+import multiprocessing
+import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TypeVar
+
+from pymoo_gridpath.progress import say_that_it_compiles
 
 try:
     import numba
@@ -21,6 +24,8 @@ F = TypeVar("F", bound=Callable)
 #: Whether kernels are compiled: numba, the ``fast`` extra, is installed.
 COMPILED = numba is not None
 
+_kernels: set[Callable] = set()
+
 
 def kernel(function: F) -> F:
     """Return a function compiled by numba, or the function itself where numba is not installed.
@@ -30,6 +35,7 @@ def kernel(function: F) -> F:
     """
     if numba is None:
         return function
+    _kernels.add(function)
     try:
         return numba.njit(cache=True, nogil=True)(function)  # pyright: ignore[reportReturnType]
     except RuntimeError:  # no folder to keep compiled code in
@@ -43,27 +49,48 @@ def is_ctrl_c(error: BaseException | None) -> bool:
     return error is not None
 
 
-@contextlib.contextmanager
-def on_compiling(tell: Callable[[], None]) -> Iterator[None]:
-    """While open, call a function when numba begins to compile, the first time only.
+def seconds_compiling() -> float:
+    """Return for how many seconds numba has compiled in this process so far, which leaves out what it kept from an earlier."""
+    return 0.0 if _compiling is None else _compiling.seconds
 
-    Code that numba has kept from an earlier process is not compiled again, and without numba nothing is.
-    """
-    if numba is None:
-        yield
-        return
+
+def working_seconds() -> float:
+    """Return the time of a clock that stands still while numba compiles, for what is to be timed without that."""
+    if _compiling is not None and _compiling.depth > 0:
+        return _compiling.begin - _compiling.seconds
+    return time.perf_counter() - seconds_compiling()
+
+
+def _listen():
+    """Return what numba tells when it begins and ends to compile, and have it say so the first time that it is a kernel."""
+    # numba has imported it already.
     from numba.core import event
 
-    class First(event.Listener):
+    class Compiling(event.Listener):
         told = False
+        seconds = 0.0
+        depth = 0
+        begin = 0.0
 
         def on_start(self, event):
-            if not self.told:
+            # A kernel that calls others has them compiled while it is. All of it is done under one lock.
+            if self.depth == 0:
+                self.begin = time.perf_counter()
+            self.depth += 1
+            if not self.told and event.data["dispatcher"].py_func in _kernels:
                 self.told = True
-                tell()
+                # Workers, whoever started them, leave it to the process that they work for.
+                if multiprocessing.current_process().name == "MainProcess":
+                    say_that_it_compiles()
 
         def on_end(self, event):
-            pass
+            self.depth -= 1
+            if self.depth == 0:
+                self.seconds += time.perf_counter() - self.begin
 
-    with event.install_listener("numba:compile", First()):
-        yield
+    listener = Compiling()
+    event.register("numba:compile", listener)
+    return listener
+
+
+_compiling = None if numba is None else _listen()

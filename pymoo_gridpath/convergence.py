@@ -9,6 +9,8 @@ import moocore
 import numpy as np
 from pymoo.core.callback import Callback
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError
 
@@ -24,6 +26,11 @@ class ConvergenceRecorder(Callback):
     reference_point : sequence of float, optional
         What `hypervolume` is measured against unless told otherwise.
 
+    Raises
+    ------
+    GridPathError
+        If the point is none.
+
     Attributes
     ----------
     evaluations, generations : list of int
@@ -38,7 +45,7 @@ class ConvergenceRecorder(Callback):
 
     def __init__(self, reference_point: Sequence[float] | np.ndarray | None = None):
         super().__init__()
-        self.reference_point = reference_point
+        self.reference_point = None if reference_point is None else _as_point(reference_point)
         self.evaluations: list[int] = []
         self.generations: list[int] = []
         self.n_feasible: list[int] = []
@@ -92,11 +99,11 @@ class ConvergenceRecorder(Callback):
             If the point does not have one number for each objective, or nothing was recorded.
         """
         given = self.reference_point if reference_point is None else reference_point
-        point = np.asarray(common_reference_point([self]) if given is None else given, dtype=float)
+        point = common_reference_point([self]) if given is None else _as_point(given)
         if not len(self):
             raise GridPathError("nothing was recorded, expected a recorder that went through a run")
         if point.shape != (self.fronts[0].shape[1],):
-            raise GridPathError(f"reference_point is {given}, expected {self.fronts[0].shape[1]} numbers")
+            raise GridPathError(f"reference_point is {shown(given)}, expected {self.fronts[0].shape[1]} numbers")
         values, previous = np.zeros(len(self)), None
         for k, front in enumerate(self.fronts):
             if front is previous:
@@ -123,11 +130,23 @@ def common_reference_point(recorders: Sequence[ConvergenceRecorder], margin: flo
     Raises
     ------
     GridPathError
-        If no recorder ever saw a legal path.
+        If no recorder ever saw a legal path, or an argument is of another kind.
     """
+    margin = checks.number("margin", margin, 0.0, expected="a part of the range, zero or more")
+    recorders = checks.items("recorders", recorders, "ConvergenceRecorders")
+    for recorder in recorders:
+        checks.instance("a recorder", recorder, ConvergenceRecorder)
     fronts = [recorder.fronts[-1] for recorder in recorders if len(recorder) and len(recorder.fronts[-1])]
     if not fronts:
         raise GridPathError("no run ended with a legal path, expected at least one to choose a reference point by")
+    if len({front.shape[1] for front in fronts}) > 1:
+        raise GridPathError("the runs have different numbers of objectives, expected runs of one problem")
     F = np.concatenate(fronts)
     spread = np.ptp(F, axis=0)
     return F.max(axis=0) + np.where(spread > 0, margin * spread, 1.0)
+
+
+def _as_point(reference_point) -> np.ndarray:
+    """Return a reference point as an array of its own, float, shape (n,)."""
+    expected = "a finite number for each objective"
+    return checks.array("reference_point", reference_point, (None,), expected=expected, finite=True).astype(float)

@@ -1,4 +1,4 @@
-"""The errors that this package raises on purpose.
+"""The errors and warnings that this package raises on purpose.
 
 Each message is one sentence that says what was wrong, where, and what was expected, so that the command line
 can print it as it is.
@@ -39,7 +39,7 @@ class MapError(GridPathError):
         self.path = str(path)
         self.line = line
         self.message = message
-        where = self.path if line is None else f"{self.path}, line {line}"
+        where = visible(path) if line is None else f"{visible(path)}, line {line}"
         super().__init__(f"{where}: {message}")
 
     def __reduce__(self):
@@ -67,7 +67,7 @@ class StudyError(GridPathError):
         self.path = None if path is None else str(path)
         self.line = line
         if self.path is not None:
-            place = self.path if line is None else f"{self.path}, line {line}"
+            place = visible(path) if line is None else f"{visible(path)}, line {line}"
         else:
             place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in self.where).lstrip(".")
         super().__init__(f"{place}: {message}" if place else message)
@@ -78,6 +78,41 @@ class StudyError(GridPathError):
 
 class CapabilityError(GridPathError):
     """An algorithm was asked for something that it cannot do."""
+
+
+class GridPathWarning(UserWarning):
+    """Base of the warnings about input that can be used, but may mean something else than what was wished."""
+
+
+class MapWarning(GridPathWarning):
+    """A map that can be read, but may have been meant otherwise.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    message : str
+        What may be wrong, and what helps.
+    """
+
+    def __init__(self, path, message: str):
+        self.path = str(path)
+        self.message = message
+        super().__init__(f"{visible(path)}: {message}")
+
+    def __reduce__(self):
+        return type(self), (self.path, self.message)
+
+
+def visible(text: object) -> str:
+    r"""Return a text on one line, with escapes in place of what a terminal would not print but obey.
+
+    Examples
+    --------
+    >>> print(visible("a\x1b[2Jb\nc"))
+    a\x1b[2Jb\nc
+    """
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in str(text))
 
 
 def nearest(name: object, known: Iterable[str], otherwise: str = "expected one of") -> str:

@@ -6,10 +6,12 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import ndimage
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridError
-from pymoo_gridpath.grid import Box, OccupancyGrid
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 
 # Potentials are rounded to multiples of this, about 9e-10. Sums of such numbers are exact in double precision (up to
 # 2**23), whatever their order, so paths over the same cells never differ by rounding noise.
@@ -38,18 +40,19 @@ def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5, box: Box | No
     Raises
     ------
     GridError
-        If the variance is not a positive number.
+        If the grid is none, or the variance is not a positive number.
 
     References
     ----------
     F. Ahmed and K. Deb, "Multi-objective optimal path planning using elitist non-dominated sorting genetic algorithms",
     Soft Computing 17(7), 2013, section 3.2 (variance of 50 % of the cell size).
     """
-    if not (math.isfinite(variance) and variance > 0):
-        raise GridError(f"variance of the potential is {variance}, expected a positive number of squared cells")
+    check_grid(grid)
+    variance = check_variance(variance)
     # The bell is separable; beyond this reach it is below 2e-17, far under the rounding.
     reach = math.ceil(min(math.sqrt(76.0 * variance), max(grid.shape)))
-    kernel = np.exp(-(np.arange(-reach, reach + 1.0) ** 2) / (2.0 * variance))
+    with np.errstate(over="ignore"):  # of the narrowest bells, which are 0 beyond their own cell
+        kernel = np.exp(-(np.arange(-reach, reach + 1.0) ** 2) / (2.0 * variance))
     box = grid.whole if box is None else box
     part = box.grown(reach, grid.shape)
     field = grid.occupied[part.slices].astype(float)
@@ -67,7 +70,7 @@ def clearance(grid: OccupancyGrid) -> np.ndarray:
     numpy.ndarray of float, shape (height, width)
         Cells; ``inf`` everywhere if no cell is occupied.
     """
-    if not grid.occupied.any():
+    if not check_grid(grid).occupied.any():
         return np.full(grid.shape, np.inf)
     return np.asarray(ndimage.distance_transform_edt(~grid.occupied))
 
@@ -101,3 +104,46 @@ class BoxedField:
         if ((x >= 0) & (x < width) & (y >= 0) & (y < height)).all():
             return self.inside.take(y * width + x)
         return np.asarray(self).take(cells)
+
+
+def check_variance(variance: float) -> float:
+    """Return the variance of a potential if it is one."""
+    expected = "a positive number of squared cells"
+    return checks.number("variance of the potential", variance, 0.0, above=True, expected=expected, error=GridError)
+
+
+def check_field(name: str, field: ArrayLike, grid: OccupancyGrid) -> np.ndarray:
+    """Return a field over a grid if it is one, shape (height, width), whatever its type of number."""
+    return checks.array(
+        name,
+        field,
+        grid.shape,
+        expected=f"numbers of shape {grid.shape}, the (height, width) of the grid",
+        error=GridError,
+    )
+
+
+def check_costs(name: str, field: ArrayLike, grid: OccupancyGrid) -> np.ndarray:
+    """Return a field of costs of cells as floats.
+
+    Returns
+    -------
+    numpy.ndarray of float, shape (height, width)
+        A new array; zero in occupied cells where the given one is not finite.
+
+    Raises
+    ------
+    GridError
+        If it is of another shape, holds what is no number, or a negative one, or in a free cell one that is not finite.
+    """
+    costs = check_field(name, field, grid).astype(float, order="C")
+    finite = np.isfinite(costs)
+    for wrong, expected in (
+        (finite & (costs < 0.0), "zero or more, also in cells without data"),
+        (~finite & ~grid.occupied, "a finite number; mark cells that no path may enter as occupied"),
+    ):
+        if wrong.any():
+            y, x = np.argwhere(wrong)[0]
+            place = "occupied" if grid.occupied[y, x] else "free"
+            raise GridError(f"{name} is {costs[y, x]:g} in the {place} cell ({x}, {y}), expected {expected}")
+    return np.where(finite, costs, 0.0)

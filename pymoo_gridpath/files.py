@@ -8,7 +8,8 @@ import re
 import uuid
 from pathlib import Path
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError, visible
 
 #: Names of files that were being written when a process was killed.
 UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}\.part")
@@ -22,11 +23,12 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> Path:
     GridPathError
         If the file cannot be written.
     """
-    path = Path(path)
+    path = Path(checks.file_path("path", path))
     try:
         replace_file(path, data)
     except OSError as error:
-        raise GridPathError(f"{path}: the file cannot be written ({error.strerror}), expected a writable place") from None
+        shown = visible(path)
+        raise GridPathError(f"{shown}: the file cannot be written ({error.strerror}), expected a writable place") from None
     return path
 
 

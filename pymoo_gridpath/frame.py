@@ -9,10 +9,20 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridError, UnreachableError
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.fields import check_field
+from pymoo_gridpath.grid import OccupancyGrid, check_grid
 
 Axis = Literal["auto", "x", "y"]
+
+
+def check_axis(axis: Axis) -> Axis:
+    """Return an axis if it is one."""
+    if not (isinstance(axis, str) and axis in ("auto", "x", "y")):
+        raise GridError(f"axis is {shown(axis)}, expected 'auto', 'x' or 'y'")
+    return axis
 
 
 class MonotoneFrame:
@@ -51,9 +61,8 @@ class MonotoneFrame:
     """
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
-        if axis not in ("auto", "x", "y"):
-            raise GridError(f"axis is {axis!r}, expected 'auto', 'x' or 'y'")
-        self.grid = grid
+        check_axis(axis)
+        self.grid = check_grid(grid)
         self.start, self.goal = grid.check_query(start, goal)
         apart = (abs(self.goal[0] - self.start[0]), abs(self.goal[1] - self.start[1]))
         if axis == "auto":
@@ -70,7 +79,7 @@ class MonotoneFrame:
             if self.admits_path():
                 return
         raise UnreachableError(
-            f"no path from {self.start} to {self.goal} on the grid {grid.name!r} is monotone along "
+            f"no path from {self.start} to {self.goal} on the grid {shown(grid.name)} is monotone along "
             f"{' or '.join(axes)}: every one turns back, which the monotone representations cannot code; expected a query that "
             f"can be crossed one column (or row) at a time, or representation='cells', which can code every path"
         )
@@ -97,6 +106,7 @@ class MonotoneFrame:
     def columns(self, field: np.ndarray) -> np.ndarray:
         """Return a field over the grid, shape (height, width), as seen in the frame, shape (n_columns, n_rows)."""
         u = 0 if self.axis == "x" else 1
+        field = check_field("field", field, self.grid)
         view = field.T if self.axis == "x" else field
         low = min(self.start[u], self.goal[u])
         view = view[low : low + self.n_columns]
@@ -104,13 +114,18 @@ class MonotoneFrame:
 
     def to_cells(self, column: ArrayLike, row: ArrayLike) -> np.ndarray:
         """Return the grid cells (x, y) of columns and rows of the frame, shape (..., 2)."""
-        along = self.start[0 if self.axis == "x" else 1] + self._step * np.asarray(column)
-        across = self._row(np.asarray(row))
+        column, row = (_whole_numbers(name, values) for name, values in (("column", column), ("row", row)))
+        if column.shape != row.shape:
+            raise GridError(f"column has the shape {column.shape} and row {row.shape}, expected the same")
+        along = self.start[0 if self.axis == "x" else 1] + self._step * column
+        across = self._row(row)
         return np.stack([along, across] if self.axis == "x" else [across, along], axis=-1)
 
     def from_cells(self, cells: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Return the columns and rows of grid cells (x, y), shape (..., 2); the inverse of `to_cells`."""
-        cells = np.asarray(cells)
+        cells = _whole_numbers("cells", cells)
+        if cells.shape[-1:] != (2,):
+            raise GridError(f"cells is {shown(cells)}, expected cells (x, y) of shape (..., 2)")
         u, v = (0, 1) if self.axis == "x" else (1, 0)
         return self._step * (cells[..., u] - self.start[u]), self._row(cells[..., v])
 
@@ -155,6 +170,10 @@ class MonotoneFrame:
     def flanks_at(self, row: np.ndarray, step: np.ndarray) -> np.ndarray:
         """Return `flanks` for steps that leave all columns but the last, both arguments of shape (N, n_columns - 1)."""
         n = self.n_columns - 1
+        expected = f"whole numbers of shape (N, {n}), within the frame of {self.n_rows} rows"
+        row, step = (checks.array(k, v, (None, n), "iu", expected=expected) for k, v in (("row", row), ("step", step)))
+        if row.shape != step.shape or not (within(row, 0, self.n_rows - 1) and within(step, -1, 1)):
+            raise GridError(f"row and step hold other numbers, or are of different lengths, expected {expected}")
         index = row + np.arange(n) * self.n_rows
         index += (step + np.int64(1)) * (n * self.n_rows)
         return self.flanks.ravel().take(index)
@@ -179,3 +198,15 @@ class MonotoneFrame:
             reached[1:] |= rising
             reached[:-1] |= falling
         return bool(reached[self.goal_row])
+
+
+def within(values: np.ndarray, low: int, high: int) -> bool:
+    """Return whether all values lie from ``low`` to ``high``."""
+    return values.size == 0 or bool(low <= values.min() and values.max() <= high)
+
+
+def _whole_numbers(name: str, values: ArrayLike) -> np.ndarray:
+    """Return an array of whole numbers, signed, since flips subtract them."""
+    return checks.array(name, values, None, "iu", expected="an array of whole numbers", error=GridError).astype(
+        np.int64, copy=False
+    )

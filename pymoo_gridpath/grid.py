@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
+import warnings
 from collections.abc import Sequence
+from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -12,11 +15,16 @@ from numpy.typing import ArrayLike
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
-from pymoo_gridpath.errors import GridError, UnreachableError
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.errors import GridError, GridPathError, GridPathWarning, UnreachableError
 
 Cell = tuple[int, int]
 
 SQRT2 = math.sqrt(2.0)
+
+# Numbers of cells that a float holds without gaps, with one bit to spare.
+_FARTHEST = 2.0**52
 
 # Grids of fewer cells are worked on whole, and so are those of which a start can reach more than this share: a part would
 # save nothing.
@@ -67,6 +75,9 @@ class OccupancyGrid:
         body: both cells beside the step must be free. True is the world of Ahmed and Deb (2013).
     name : str, default "grid"
         What figures and files call this grid.
+    unknown : array_like of bool, shape (height, width), optional
+        True where the map did not say whether a cell is free; ``occupied`` says what it was taken for. None, the default, where
+        maps of this kind know no unknown cells. Copied, and no part of what makes two grids equal.
 
     Raises
     ------
@@ -92,23 +103,20 @@ class OccupancyGrid:
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         corner_cutting: bool = False,
         name: str = "grid",
+        unknown: ArrayLike | None = None,
     ):
-        self._occupied = _as_occupied(occupied)
-        self._resolution = _as_float(resolution)
-        if not (math.isfinite(self._resolution) and self._resolution > 0):
-            raise GridError(f"resolution is {resolution}, expected a positive number of metres per cell")
-        pose = tuple(_as_float(v) for v in origin)
-        if len(pose) == 2:
-            pose = (*pose, 0.0)
-        if len(pose) != 3 or not all(math.isfinite(v) for v in pose):
-            raise GridError(f"origin is {origin!r}, expected (x, y) or (x, y, yaw) in metres and radians")
-        self._origin = pose
-        if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in pose)):
+        self._occupied = _as_cells("occupied", occupied)
+        self._unknown = None if unknown is None else _as_cells("unknown", unknown)
+        if self._unknown is not None and self._unknown.shape != self.shape:
+            raise GridError(f"unknown has the shape {self._unknown.shape}, expected that of the grid, {self.shape}")
+        self._resolution = checks.number(
+            "resolution", resolution, 0.0, above=True, expected="a positive number of metres per cell", error=GridError
+        )
+        self._origin = _as_pose(origin)
+        if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in self._origin)):
             raise GridError(f"resolution {resolution} and origin {origin!r} put the map beyond what numbers can hold")
-        if not isinstance(corner_cutting, bool | np.bool_):
-            raise GridError(f"corner_cutting is {corner_cutting!r}, expected True or False")
-        self._corner_cutting = bool(corner_cutting)
-        self._name = str(name)
+        self._corner_cutting = checks.flag("corner_cutting", corner_cutting, GridError)
+        self._name = checks.text("name", name, GridError)
 
     # -- what it is ---------------------------------------------------------------------------------------------------
 
@@ -116,6 +124,11 @@ class OccupancyGrid:
     def occupied(self) -> np.ndarray:
         """Occupied cells, bool, shape (height, width), read-only."""
         return self._occupied
+
+    @property
+    def unknown(self) -> np.ndarray | None:
+        """Cells of which the map did not say whether they are free, bool, shape (height, width), read-only; None as above."""
+        return self._unknown
 
     @property
     def resolution(self) -> float:
@@ -158,17 +171,21 @@ class OccupancyGrid:
         return int(self._occupied.sum())
 
     def replace(self, **changes) -> OccupancyGrid:
-        """Return a copy in which the named constructor arguments are changed."""
+        """Return a copy in which the named constructor arguments are changed.
+
+        Unknown cells are forgotten if ``occupied`` has another shape.
+        """
         arguments = {
             "occupied": self._occupied,
             "resolution": self._resolution,
             "origin": self._origin,
             "corner_cutting": self._corner_cutting,
             "name": self._name,
+            "unknown": self._unknown if np.shape(changes.get("occupied", self._occupied)) == self.shape else None,
         }
         unknown = set(changes) - set(arguments)
         if unknown:
-            raise TypeError(f"replace() has no argument {sorted(unknown)[0]!r}, expected one of {', '.join(arguments)}")
+            raise TypeError(f"replace() has no argument {shown(sorted(unknown)[0])}, expected one of {', '.join(arguments)}")
         return OccupancyGrid(**{**arguments, **changes})
 
     def __eq__(self, other) -> bool:
@@ -184,7 +201,8 @@ class OccupancyGrid:
 
     def __reduce__(self):
         # Through the constructor, because pickling an array drops its read-only flag.
-        return OccupancyGrid, (self._occupied, self._resolution, self._origin, self._corner_cutting, self._name)
+        arguments = self._occupied, self._resolution, self._origin, self._corner_cutting, self._name, self._unknown
+        return OccupancyGrid, arguments
 
     def __repr__(self) -> str:
         rule = "may be cut" if self._corner_cutting else "may not be cut"
@@ -197,26 +215,39 @@ class OccupancyGrid:
 
     def contains(self, cell: Sequence[int]) -> bool:
         """Whether a cell lies on the grid."""
-        x, y = cell
+        x, y = _as_cell("cell", cell)
         return 0 <= x < self.width and 0 <= y < self.height
 
     def is_free(self, cell: Sequence[int]) -> bool:
         """Whether a cell lies on the grid and is not occupied."""
-        x, y = cell
-        return self.contains(cell) and not self._occupied[y, x]
+        x, y = _as_cell("cell", cell)
+        return self.contains((x, y)) and not self._occupied[y, x]
 
-    def nearest_free(self, cell: Sequence[int]) -> Cell | None:
-        """Return the free cell nearest to ``cell`` (Euclidean; ties: lower y, then lower x), or None if all are occupied."""
-        ys, xs = np.nonzero(~self._occupied)
+    def nearest_free(self, cell: Sequence[int], joined_with: Sequence[int] | None = None) -> Cell | None:
+        """Return the free cell nearest to ``cell`` (Euclidean; ties: lower y, then lower x), or None if all are occupied.
+
+        Parameters
+        ----------
+        cell : sequence of two ints
+            The cell (x, y), on the grid or off it.
+        joined_with : sequence of two ints, optional
+            A free cell; only others that a path joins with it count, and None says that there are none.
+        """
+        cell, wanted = _as_cell("cell", cell), ~self._occupied
+        if joined_with is not None:
+            x, y = self.check_cell(joined_with, "joined_with")
+            wanted = self.regions == self.regions[y, x]
+            wanted[y, x] = False
+        ys, xs = np.nonzero(wanted)
         if len(xs) == 0:
             return None
         # Squares of larger numbers would overflow.
         far = 10**6
-        x, y = (min(max(int(v), -far), size + far) for v, size in zip(cell, (self.width, self.height), strict=True))
+        x, y = (min(max(v, -far), size + far) for v, size in zip(cell, (self.width, self.height), strict=True))
         k = int(np.argmin((xs - x) ** 2 + (ys - y) ** 2))
         return int(xs[k]), int(ys[k])
 
-    def check_cell(self, cell: Sequence[int], role: str = "cell") -> Cell:
+    def check_cell(self, cell: Sequence[int], role: str = "cell", other: Sequence[int] | None = None) -> Cell:
         """Return ``cell`` as a pair of ints if it is a free cell of this grid.
 
         Parameters
@@ -225,30 +256,40 @@ class OccupancyGrid:
             The cell (x, y).
         role : str
             What the error message calls it, for instance ``"start"``.
+        other : sequence of two ints, optional
+            The other end of the path that is wanted, a free cell or not.
 
         Raises
         ------
         GridError
             If it is not a pair of whole numbers, lies outside the grid or is occupied; the message names the nearest free
-            cell.
+            cell, and if the other end is one, the nearest that a path joins with it.
         """
-        try:
-            x, y = (int(v) for v in cell)
-            whole = (x, y) == tuple(cell)
-        except (TypeError, ValueError, OverflowError):
-            whole, x, y = False, 0, 0
-        if not whole:
-            raise GridError(f"{role} is {cell!r}, expected a cell (x, y) of two whole numbers")
+        x, y = _as_cell(checks.text("role", role, GridError), cell)
         if self.is_free((x, y)):
             return x, y
-        near = self.nearest_free((x, y))
-        hint = "the grid has no free cell" if near is None else f"the nearest free cell is ({near[0]}, {near[1]})"
+        hint = self._hint((x, y), other)
         if not self.contains((x, y)):
             raise GridError(
-                f"{role} ({x}, {y}) lies outside the grid {self.name!r} of {self.width} x {self.height} cells "
+                f"{role} {shown((x, y))} lies outside the grid {shown(self.name)} of {self.width} x {self.height} cells "
                 f"(x from 0 to {self.width - 1}, y from 0 to {self.height - 1}, y up); {hint}"
             )
-        raise GridError(f"{role} ({x}, {y}) lies on an obstacle of the grid {self.name!r}; {hint}")
+        raise GridError(f"{role} ({x}, {y}) lies on an obstacle of the grid {shown(self.name)}; {hint}")
+
+    def _hint(self, cell: Cell, other: Sequence[int] | None) -> str:
+        """Return the part of a message that names a cell to take instead."""
+        end = None
+        if other is not None:
+            # If the other end is no better, it tells nothing.
+            with contextlib.suppress(GridError):
+                end = self.check_cell(other)
+        near = self.nearest_free(cell, end)
+        if end is None:
+            return "the grid has no free cell" if near is None else f"the nearest free cell is ({near[0]}, {near[1]})"
+        joined = f"that a path joins with ({end[0]}, {end[1]})"
+        return (
+            f"there is no free cell {joined}" if near is None else f"the nearest free cell {joined} is ({near[0]}, {near[1]})"
+        )
 
     def check_query(self, start: Sequence[int], goal: Sequence[int]) -> tuple[Cell, Cell]:
         """Return ``start`` and ``goal`` as pairs of ints if a path can lead from one to the other.
@@ -260,14 +301,14 @@ class OccupancyGrid:
         UnreachableError
             If no path joins them under the corner rule of the grid.
         """
-        start, goal = self.check_cell(start, "start"), self.check_cell(goal, "goal")
+        start, goal = self.check_cell(start, "start", goal), self.check_cell(goal, "goal", start)
         if start == goal:
             raise GridError(f"start and goal are the same cell ({start[0]}, {start[1]}), expected two different cells")
         region = self.regions
         if region[start[1], start[0]] != region[goal[1], goal[0]]:
             raise UnreachableError(
                 f"goal ({goal[0]}, {goal[1]}) cannot be reached from start ({start[0]}, {start[1]}) on the grid "
-                f"{self.name!r}: obstacles separate them; expected two cells of the same free region"
+                f"{shown(self.name)}: obstacles separate them; expected two cells of the same free region"
             )
         return start, goal
 
@@ -284,7 +325,7 @@ class OccupancyGrid:
         numpy.ndarray, shape (..., 2)
             Metres.
         """
-        local = (np.asarray(cells, dtype=float) + 0.5) * self._resolution
+        local = (_pairs("cells", cells, "cells (x, y)").astype(float) + 0.5) * self._resolution
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
         return local @ np.array([[cos, sin], [-sin, cos]]) + np.array([x0, y0])
@@ -300,11 +341,20 @@ class OccupancyGrid:
         Returns
         -------
         numpy.ndarray of int, shape (..., 2)
+
+        Raises
+        ------
+        GridError
+            If the points are no pairs of finite numbers, or lie more than 2**52 cells away.
         """
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
-        local = (np.asarray(points, dtype=float) - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
-        return np.floor(local / self._resolution).astype(int)
+        local = (_pairs("points", points, "points (x, y) in metres") - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
+        with np.errstate(over="ignore"):
+            cells = np.floor(local / self._resolution)
+        if not (np.abs(cells) <= _FARTHEST).all():
+            raise GridError("points lie further away than cells can be counted, expected metres in the frame of the map")
+        return cells.astype(int)
 
     # -- the whole grid -----------------------------------------------------------------------------------------------
 
@@ -373,14 +423,25 @@ class OccupancyGrid:
         ------
         GridError
             If the radius is negative or not finite.
+
+        Warns
+        -----
+        GridPathWarning
+            If the radius is not zero but too small to have an effect: at most half a cell.
         """
-        if not (math.isfinite(radius) and radius >= 0):
-            raise GridError(f"robot radius is {radius}, expected a number of metres, zero or more")
+        radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
         cells = radius / self._resolution
         reach = math.ceil(min(cells + 0.5, max(self.shape)))
         offset = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0) ** 2
         disc = np.sqrt(offset[:, None] + offset[None, :]) < cells - 1e-9
         if disc.sum() <= 1:
+            if radius > 0:
+                warnings.warn(
+                    f"the robot radius of {radius:g} m is at most half a cell of {self._name!r}, {self._resolution:g} m "
+                    "wide, so that no obstacle grows",
+                    GridPathWarning,
+                    stacklevel=2,
+                )
             return self
         # It takes as long to import as the rest of the package, and is used by this method alone.
         from scipy import signal
@@ -402,7 +463,7 @@ class OccupancyGrid:
             ``y * width + x``. Each step is listed in both directions.
         """
         free = ~self._occupied
-        index = np.arange(free.size).reshape(free.shape)
+        index = np.arange(free.size, dtype=np.int32).reshape(free.shape)  # what csgraph takes before scipy 1.15
         pairs, lengths = [], []
 
         def add(a, b, legal, length):
@@ -436,6 +497,7 @@ class OccupancyGrid:
             ``inf`` where no path leads (within ``limit``).
         """
         x, y = self.check_cell(start, "start")
+        limit = checks.number("limit", limit, 0.0, infinite=True, expected="a length in cells, zero or more", error=GridError)
         box = self.box_of((x, y))
         if box not in self._graphs:
             self._graphs[box] = self.crop(box).move_graph()
@@ -450,23 +512,57 @@ class OccupancyGrid:
         return {}
 
 
-def _as_float(value) -> float:
-    """Return a number as a float, and what is no number as NaN."""
+def check_grid(grid: OccupancyGrid) -> OccupancyGrid:
+    """Return what is given as a grid if it is one."""
+    return checks.instance("grid", grid, OccupancyGrid, "; load_map reads one", error=GridError)
+
+
+def _as_pose(origin) -> tuple[float, ...]:
+    """Return (x, y, yaw)."""
+    expected = "(x, y) or (x, y, yaw) in metres and radians"
     try:
-        return float(value)
-    except (TypeError, ValueError):
-        return math.nan
+        pose = tuple(checks.number("origin", v, expected=expected) for v in checks.items("origin", origin, expected))
+    except GridPathError:
+        pose = ()
+    if len(pose) not in (2, 3):
+        raise GridError(f"origin is {shown(origin)}, expected {expected}")
+    return pose if len(pose) == 3 else (*pose, 0.0)
 
 
-def _as_occupied(occupied: ArrayLike) -> np.ndarray:
+def _as_cell(role: str, cell) -> Cell:
+    """Return a cell as a pair of ints, on the grid or not."""
+    if type(cell) is tuple and len(cell) == 2 and type(cell[0]) is int and type(cell[1]) is int:
+        return cell
+    try:
+        x, y = (int(v) for v in cell)
+        whole = all(isinstance(v, Real) for v in cell) and (x, y) == tuple(cell)
+    except Exception:
+        whole, x, y = False, 0, 0
+    if not whole or (isinstance(cell, np.ma.MaskedArray) and np.ma.getmaskarray(cell).any()):
+        raise GridError(f"{role} is {shown(cell)}, expected a cell (x, y) of two whole numbers")
+    return x, y
+
+
+def _pairs(name: str, values: ArrayLike, what: str) -> np.ndarray:
+    """Return an array of pairs of finite numbers, shape (..., 2)."""
+    expected = f"{what} as numbers of shape (..., 2)"
+    pairs = checks.array(name, values, expected=expected, finite=True, error=GridError)
+    if pairs.shape[-1:] != (2,):
+        raise GridError(f"{name} is {shown(pairs)}, expected {expected}")
+    return pairs
+
+
+def _as_cells(name: str, cells: ArrayLike) -> np.ndarray:
     """Return a read-only bool copy of an array of 0 and 1."""
-    array = np.asarray(occupied)
+    values = "0 (free) and 1 (occupied)" if name == "occupied" else "0 and 1"
+    array = checks.array(name, cells, expected=f"a two-dimensional array of booleans, or of {values}", error=GridError)
     if array.ndim != 2:
-        raise GridError(f"a grid needs a two-dimensional array of occupied cells, got {array.ndim} dimensions")
+        raise GridError(f"a grid needs a two-dimensional array of {name} cells, got {array.ndim} dimensions")
     if array.size == 0:
         raise GridError(f"a grid needs at least one cell, got an array of shape {array.shape}")
-    if array.dtype != bool and (array.dtype.kind not in "iuf" or not np.isin(array, (0, 1)).all()):
-        raise GridError("a grid needs an array of booleans, or of 0 (free) and 1 (occupied), got other values")
-    copy = array.astype(bool)
+    if array.dtype != bool and not np.isin(array, (0, 1)).all():
+        raise GridError(f"a grid needs an array of booleans, or of {values}, as {name} cells, got other values")
+    # Row by row whatever the order of the given one, for its bytes and its flat view are those of the grid.
+    copy = array.astype(bool, order="C")
     copy.flags.writeable = False
     return copy

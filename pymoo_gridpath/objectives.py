@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import reprlib
+import functools
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from pymoo_gridpath.errors import GridPathError, nearest
-from pymoo_gridpath.fields import obstacle_potential
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.fields import BoxedField, check_costs, check_variance, obstacle_potential
 from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.paths import TURN_UNIT
 
@@ -18,7 +20,8 @@ class Objective(ABC):
     """A quantity of a path to be minimised.
 
     Subclass it to add one of your own: set `name` and `label`, and compute from the paths, or from the sum of a field over the
-    visited cells if `field` returns one. Objectives with a field that is nowhere negative have an exact front.
+    visited cells if `field` returns one. A field is nowhere negative, and whole numbers, truth values and short
+    floats in it count as floats; objectives that have one have an exact front.
 
     Attributes
     ----------
@@ -119,7 +122,7 @@ class Vulnerability(Objective):
     label = "Path vulnerability"
 
     def __init__(self, variance: float = 0.5):
-        self.variance = variance
+        self.variance = check_variance(variance)
 
     def field(self, grid):
         return obstacle_potential(grid, self.variance)
@@ -180,20 +183,41 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
     """
     if isinstance(objectives, str | Objective):
         objectives = [objectives]
-    elif not isinstance(objectives, Iterable):
-        raise GridPathError(f"objectives are {objectives!r}, expected names such as 'length', or Objective objects")
     made = []
-    for item in objectives:
+    for item in checks.items("objectives", objectives, "names such as 'length', or Objective objects"):
         if isinstance(item, str):
-            if item not in OBJECTIVES:
-                raise GridPathError(f"there is no objective {reprlib.repr(item)}; {nearest(item, OBJECTIVES)}")
-            item = OBJECTIVES[item]()
+            item = OBJECTIVES[checks.known("objective", item, OBJECTIVES)]()
         elif not isinstance(item, Objective):
-            raise GridPathError(f"objective {item!r} is neither a name nor an Objective")
+            raise GridPathError(f"objective {shown(item)} is neither a name nor an Objective")
         if not isinstance(getattr(item, "name", None), str):
             raise GridPathError(f"the objective {type(item).__name__} has no name, expected a text as its attribute 'name'")
         made.append(item)
     names = [item.name for item in made]
     if not names or len(set(names)) < len(names):
-        raise GridPathError(f"objectives are {reprlib.repr(names)}, expected one or more, each once")
+        raise GridPathError(f"objectives are {shown(names)}, expected one or more, each once")
     return tuple(made)
+
+
+def field_of(objective: Objective, grid: OccupancyGrid, box: Box | None = None) -> np.ndarray | None:
+    """Return the field of an objective, or the part in a box, or None if it has none.
+
+    Raises
+    ------
+    GridPathError
+        See `pymoo_gridpath.fields.check_costs`; of an objective that is not local, wherever in the grid.
+    """
+    box = grid.whole if box is None else box
+    if objective.local and box != grid.whole:
+        return objective.field_in(grid, box)
+    given = objective.field(grid)
+    if given is None:
+        return None
+    return check_costs(f"the field of the objective {shown(objective.name)}", given, grid)[box.slices]
+
+
+def boxed_field_of(objective: Objective, grid: OccupancyGrid, box: Box) -> np.ndarray | BoxedField | None:
+    """Return the field of an objective; if that is more than a box, it is worked out beyond once it is asked for."""
+    inside = field_of(objective, grid, box)
+    if inside is None or box == grid.whole:
+        return inside
+    return BoxedField(inside, box, grid.width, functools.partial(field_of, objective, grid))

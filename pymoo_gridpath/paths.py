@@ -6,8 +6,11 @@ import functools
 
 import numpy as np
 
-from pymoo_gridpath.frame import MonotoneFrame
-from pymoo_gridpath.grid import SQRT2, OccupancyGrid
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.fields import BoxedField
+from pymoo_gridpath.frame import MonotoneFrame, within
+from pymoo_gridpath.grid import SQRT2, OccupancyGrid, check_grid
 from pymoo_gridpath.search.moves import HEADINGS
 from pymoo_gridpath.search.sequences import Sequences
 
@@ -30,12 +33,19 @@ class ColumnPaths:
     frame : MonotoneFrame
     enter, leave : numpy.ndarray of int, shape (N, n_columns)
         Rows of the frame; ``|enter[:, c + 1] - leave[:, c]| <= 1``.
+
+    Raises
+    ------
+    GridPathError
+        If the arrays are no such rows, as far as they are looked at: too long a step is found where it is measured.
     """
 
     def __init__(self, frame: MonotoneFrame, enter: np.ndarray, leave: np.ndarray):
-        self.frame = frame
-        self.enter = enter
-        self.leave = leave
+        self.frame = checks.instance("frame", frame, MonotoneFrame)
+        self.enter = _rows("enter", enter, frame, frame.n_columns)
+        self.leave = _rows("leave", leave, frame, frame.n_columns)
+        if self.enter.shape != self.leave.shape:
+            raise GridPathError(f"enter has {len(self.enter)} rows and leave {len(self.leave)}, expected one each for a path")
 
     @classmethod
     def through(cls, frame: MonotoneFrame, exit_rows: np.ndarray) -> ColumnPaths:
@@ -51,6 +61,8 @@ class ColumnPaths:
         exit_rows : numpy.ndarray of int, shape (N, n_columns - 1)
             Within 0 and n_rows - 1.
         """
+        checks.instance("frame", frame, MonotoneFrame)
+        exit_rows = _rows("exit_rows", exit_rows, frame, frame.n_columns - 1)
         leave = np.empty((len(exit_rows), frame.n_columns), dtype=np.int32)
         leave[:, :-1] = exit_rows
         leave[:, -1] = frame.goal_row
@@ -67,12 +79,18 @@ class ColumnPaths:
 
     def __getitem__(self, index) -> ColumnPaths:
         """Return the paths at a slice, a mask or an array of indices."""
+        index = _some(index, len(self))
         return ColumnPaths(self.frame, self.enter[index], self.leave[index])
 
     @functools.cached_property
     def _step(self) -> np.ndarray:
         """Rows gained by the step into each column but the first: -1, 0 or 1, int8, shape (N, n_columns - 1)."""
-        return (self.enter[:, 1:] - self.leave[:, :-1]).astype(np.int8)
+        step = self.enter[:, 1:] - self.leave[:, :-1]
+        if not within(step, -1, 1):
+            raise GridPathError(
+                "a path enters a column more than one row from where it left the one before, expected one at most"
+            )
+        return step.astype(np.int8)
 
     @functools.cached_property
     def _climb(self) -> np.ndarray:
@@ -118,6 +136,9 @@ class ColumnPaths:
         -------
         numpy.ndarray, shape (N,)
         """
+        frame = self.frame
+        shapes = (frame.n_columns, frame.n_rows + 1), (frame.grid.width * frame.grid.height,)
+        sums = _summed(sums, *shapes)
         if sums.ndim == 1:
             return _sums(sums.take(self.sequences.cells), self.sequences.offsets)
         flat = sums.ravel()
@@ -143,6 +164,7 @@ class ColumnPaths:
 
     def cells(self, index: int) -> np.ndarray:
         """Return the grid cells (x, y) of one path in the order in which it visits them, int, shape (n_cells, 2)."""
+        index = _place(index, len(self))
         enter, leave = self.enter[index], self.leave[index]
         columns, rows = [], []
         for column, (low, high) in enumerate(zip(enter, leave, strict=True)):
@@ -204,15 +226,19 @@ class CellPaths:
     """
 
     def __init__(self, grid: OccupancyGrid, rows: np.ndarray):
-        self.grid = grid
-        self.rows = rows
+        self.grid = check_grid(grid)
+        n_cells = grid.width * grid.height
+        expected = f"indices of cells, whole numbers from 0 to {n_cells - 1} of shape (N, n), n at least 1"
+        self.rows = checks.array("rows", rows, (None, None), "iu", expected=expected)
+        if not self.rows.shape[1] or not within(self.rows, 0, n_cells - 1):
+            raise GridPathError(f"rows is {checks.shown(self.rows)} with other values, expected {expected}")
 
     def __len__(self) -> int:
         return len(self.rows)
 
     def __getitem__(self, index) -> CellPaths:
         """Return the paths at a slice, a mask or an array of indices."""
-        return CellPaths(self.grid, self.rows[index])
+        return CellPaths(self.grid, self.rows[_some(index, len(self))])
 
     @functools.cached_property
     def sequences(self) -> Sequences:
@@ -285,7 +311,7 @@ class CellPaths:
         -------
         numpy.ndarray, shape (N,)
         """
-        return self._sum(field.take(self.sequences.cells))
+        return self._sum(_summed(field, (self.grid.width * self.grid.height,)).take(self.sequences.cells))
 
     @property
     def interfering_cells(self) -> np.ndarray:
@@ -307,10 +333,56 @@ class CellPaths:
 
     def cells(self, index: int) -> np.ndarray:
         """Return the grid cells (x, y) of one path in the order in which it visits them, int, shape (n_cells, 2)."""
-        visited = self[index : index + 1 or None].sequences.cells
+        visited = self[[_place(index, len(self))]].sequences.cells
         return np.stack([visited % self.grid.width, visited // self.grid.width], axis=-1)
 
 
 def _sums(values: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     """Return the sum of the values of each path, which begin at its offset, shape (N,)."""
     return np.add.reduceat(values, offsets[:-1]) if len(offsets) > 1 else values[:0]
+
+
+def check_paths(paths):
+    """Return a batch of decoded paths if it is one; what a representation of one's own decodes to needs the same measures."""
+    measures = ("length", "turn", "interfering_cells", "total", "cells")
+    if isinstance(paths, ColumnPaths | CellPaths) or all(hasattr(paths, name) for name in ("__len__", *measures)):
+        return paths
+    raise GridPathError(f"paths is {checks.shown(paths)}, expected paths as decode returns them")
+
+
+def _rows(name: str, rows: np.ndarray, frame: MonotoneFrame, n_columns: int) -> np.ndarray:
+    """Return rows of a frame, signed, since they are subtracted, if they are such."""
+    expected = f"rows of the frame, whole numbers from 0 to {frame.n_rows - 1} of shape (N, {n_columns})"
+    rows = checks.array(name, rows, (None, n_columns), "iu", expected=expected)
+    if not within(rows, 0, frame.n_rows - 1):
+        raise GridPathError(f"{name} holds other numbers, expected {expected}")
+    return rows if rows.dtype.kind == "i" and rows.itemsize >= 4 else rows.astype(np.int64)
+
+
+def _summed(field: np.ndarray | BoxedField, *shapes: tuple[int, ...]) -> np.ndarray:
+    """Return a prepared field if it has one of the shapes, or is known in a box."""
+    if isinstance(field, BoxedField):
+        return field
+    expected = f"numbers of shape {' or '.join(map(str, shapes))}, as the representation prepares them"
+    field = checks.array("field", field, expected=expected)
+    if field.shape not in shapes:
+        raise GridPathError(f"field is {checks.shown(field)}, expected {expected}")
+    return field
+
+
+def _some(index, n_paths: int):
+    """Return a slice, a mask or an array of indices if it chooses among so many paths."""
+    if isinstance(index, slice):
+        return index
+    expected = f"a slice, a mask or an array of indices of {n_paths} paths"
+    chosen = checks.array("index", index, (None,), "biu", expected=expected)
+    if chosen.dtype.kind == "b" and len(chosen) == n_paths:
+        return chosen
+    if chosen.dtype.kind == "b" or not within(chosen, -n_paths, n_paths - 1):
+        raise IndexError(f"index is {checks.shown(index)}, expected {expected}")
+    return chosen.astype(np.int64, copy=False)
+
+
+def _place(index: int, n_paths: int) -> int:
+    """Return the index of one path, counted from the end where it is negative, from the start."""
+    return checks.whole("index", index, -n_paths, n_paths - 1) % n_paths

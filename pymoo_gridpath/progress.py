@@ -2,18 +2,52 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
+import warnings
+from collections.abc import Iterator
 
 import numpy as np
+
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError, visible
 
 #: What `say_that_it_compiles` says.
 COMPILING = "compiling the search for this machine, about 20 s the first time"
 
 
 def say_that_it_compiles() -> None:
-    """Say why nothing happens yet, on a line of its own that takes the place of a progress line."""
-    print(("\r\x1b[K" if sys.stderr.isatty() else "") + COMPILING, file=sys.stderr)
+    """Say why nothing happens yet."""
+    _line(COMPILING)
+
+
+def say(message: object) -> None:
+    """Say something about the work on standard error, in one line that names the program."""
+    _line(f"pymoo-gridpath: {visible(message)}")
+
+
+@contextlib.contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """While open, show warnings about what the user gave as one line each, in place of Python's two with a line of code."""
+
+    def show(message, category, filename, lineno, file=None, line=None):
+        if issubclass(category, UserWarning):
+            say(f"warning: {message}")
+        else:
+            shown(message, category, filename, lineno, file, line)
+
+    with warnings.catch_warnings():
+        shown, warnings.showwarning = warnings.showwarning, show
+        yield
+
+
+def _line(text: str) -> None:
+    """Write a line on standard error, in the place of a progress line if one is shown."""
+    # Programs without a console have none, and whoever reads it may have gone.
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError):
+            print(("\r\x1b[K" if sys.stderr.isatty() else "") + text, file=sys.stderr, flush=True)
 
 
 class Progress:
@@ -30,10 +64,12 @@ class Progress:
     """
 
     def __init__(self, n_runs: int, n_gen: int, stream=None, interval: float = 0.1):
-        self.n_runs = n_runs
-        self.n_gen = n_gen
+        self.n_runs = checks.whole("n_runs", n_runs, 0)
+        self.n_gen = checks.whole("n_gen", n_gen, 1)
         self.stream = sys.stderr if stream is None else stream
-        self.interval = interval
+        if not all(hasattr(self.stream, method) for method in ("write", "flush", "isatty")):
+            raise GridPathError(f"stream is {checks.shown(stream)}, expected a file to write text to")
+        self.interval = checks.number("interval", interval, 0.0, infinite=True, expected="seconds, zero or more")
         self.shown = self.stream.isatty()
         self._start = self._last = time.monotonic()
 

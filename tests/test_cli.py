@@ -1,11 +1,9 @@
 """The command line as a user meets it: real processes, their output, files and exit codes."""
 
-import contextlib
 import csv
 import io
 import json
 import os
-import pty
 import signal
 import subprocess
 import sys
@@ -56,7 +54,7 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
         assert {"points", "length", "vulnerability", "turn", "names"} <= set(path)
     assert document["seed"] == 4
     shortest = load_map(free_map).shortest_lengths((0, 0))[3, 5]
-    assert f"shortest of all paths on this grid has length {shortest:.3f}" in done.stdout
+    assert f"shortest of all paths on this grid has length {shortest:.3f} ({shortest:.3f} m)\n" in done.stdout
     assert min(path["length"] for path in paths) >= shortest - 1e-9
 
 
@@ -143,20 +141,20 @@ def test_plan_with_one_objective(tmp_path, free_map):
     assert "shortest" in done.stdout
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [([], True), (["--algorithm", "exact", "--corner-cutting"], True), (["--representation", "integer"], False)],
-)
-def test_compiling_is_said_where_the_search_is_compiled(tmp_path, free_map, options, said, capsys, monkeypatch):
-    @contextlib.contextmanager
-    def compiling(tell):
-        tell()
-        yield
-
-    monkeypatch.setattr(cli, "on_compiling", compiling)
-    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", "-o", tmp_path / "out", *options]
-    assert main([*map(str, arguments), *([] if "exact" in options else FAST)]) == 0
-    assert capsys.readouterr().err == (f"{COMPILING}\n" if said else "")
+def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
+    # The short way is past the top of the wall, one column back; the way that never turns back is past its foot.
+    path = tmp_path / "wall.txt"
+    path.write_text("\n".join(["........", ".....##.", *["......#."] * 10, "........"]))
+    query = ["plan", str(path), "--start", "5,10", "--goal", "7,12", "-o", str(tmp_path / "out")]
+    assert main([*query, "--axis", "x", "--algorithm", "exact"]) == 0
+    captured = capsys.readouterr()
+    assert "NOTE: the shortest path found is" in captured.out
+    assert len([line for line in captured.err.splitlines() if "longer than the shortest of all; try the" in line]) == 1
+    assert main([*query, "--representation", "cells", "--algorithm", "exact"]) == 0
+    captured = capsys.readouterr()
+    assert "for comparison" in captured.out and "longer" not in captured.out + captured.err
+    assert main([*query, "--objectives", "vulnerability,turn", "--algorithm", "exact"]) == 0
+    assert "for comparison" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -354,6 +352,7 @@ def test_progress_shows_on_a_terminal_and_clears_its_line():
 
 
 def test_progress_appears_on_a_real_terminal(tmp_path, free_map):
+    pty = pytest.importorskip("pty", reason="there are no pseudo-terminals on Windows")
     master, slave = pty.openpty()
     command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", str(free_map), "--start", "0,0", "--goal", "5,3"]
     command += ["--pop-size", "50", "--generations", "60", "-o", str(tmp_path / "out")]

@@ -1,11 +1,17 @@
-"""Kernels: what is said of their compilation."""
+"""Kernels: what is said of their compilation, and how long it takes."""
 
 import importlib.util
+import os
+import subprocess
+import sys
+from types import SimpleNamespace
 
 import pytest
 
 from pymoo_gridpath import compiled
-from pymoo_gridpath.compiled import on_compiling
+from pymoo_gridpath.compiled import working_seconds
+from pymoo_gridpath.exact.budget import Budget, Meter
+from pymoo_gridpath.progress import COMPILING
 
 SOURCE = """
 from pymoo_gridpath.compiled import kernel
@@ -20,17 +26,16 @@ def four_times(number):
 """
 
 
-def times_told(path):
-    """How often compiling is told of in what is a new process to numba: a fresh import of the kernels, called."""
+def use(path, monkeypatch):
+    """Call the kernels in what is a new process to numba and to this package."""
     spec = importlib.util.spec_from_file_location("kernels", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    told = []
-    with on_compiling(lambda: told.append(None)):
-        assert module.four_times(3) == module.four_times(3) == 12
-        assert module.four_times(0.5) == 2.0
-    return len(told)
+    if compiled._compiling is not None:
+        monkeypatch.setattr(compiled._compiling, "told", False)
+    assert module.four_times(3) == module.four_times(3) == 12
+    assert module.four_times(0.5) == 2.0
 
 
 @pytest.fixture
@@ -42,23 +47,116 @@ def kernels(tmp_path, monkeypatch):
     return path
 
 
-def test_compiling_is_told_of_once_and_not_when_compiled_code_is_at_hand(kernels):
-    assert times_told(kernels) == 1
-    assert times_told(kernels) == 0
+def test_compiling_is_said_once_and_not_when_compiled_code_is_at_hand(kernels, monkeypatch, capsys):
+    use(kernels, monkeypatch)
+    assert capsys.readouterr() == ("", f"{COMPILING}\n")
+    use(kernels, monkeypatch)
+    assert capsys.readouterr() == ("", "")
     kernels.write_text(SOURCE.replace("2 * number", "number + number"))
-    assert times_told(kernels) == 1
+    use(kernels, monkeypatch)
+    assert capsys.readouterr() == ("", f"{COMPILING}\n")
 
 
-def test_compiling_that_cannot_be_kept_is_told_of_each_time(kernels, monkeypatch):
+def test_compiling_that_cannot_be_kept_is_said_each_time(kernels, monkeypatch, capsys):
     import numba
 
     def nowhere(self):
         raise OSError
 
     monkeypatch.setattr(numba.core.caching._CacheLocator, "ensure_cache_path", nowhere)
-    assert times_told(kernels) == times_told(kernels) == 1
+    for _ in range(2):
+        use(kernels, monkeypatch)
+        assert capsys.readouterr().err == f"{COMPILING}\n"
 
 
-def test_nothing_is_told_of_without_numba(kernels, monkeypatch):
+def test_functions_of_others_compile_without_a_word(kernels, monkeypatch, capsys):
+    import numba
+
+    monkeypatch.setattr(compiled._compiling, "told", False)
+    before = compiled.seconds_compiling()
+    assert numba.njit(lambda number: number + 1)(1) == 2
+    assert capsys.readouterr().err == ""
+    assert compiled.seconds_compiling() > before
+
+
+def test_nothing_is_said_without_numba(kernels, monkeypatch, capsys):
     monkeypatch.setattr(compiled, "numba", None)
-    assert times_told(kernels) == 0
+    monkeypatch.setattr(compiled, "_compiling", None)
+    use(kernels, monkeypatch)
+    assert capsys.readouterr().err == "" and compiled.seconds_compiling() == 0.0
+
+
+@pytest.mark.parametrize("stderr", ["None", "open(os.devnull)"])
+def test_compiling_goes_on_where_nothing_can_be_said(kernels, tmp_path, stderr):
+    script = f"import os, sys\nsys.stderr = {stderr}\nsys.path.insert(0, {str(tmp_path)!r})\nimport kernels\n"
+    done = run(script + "print(kernels.four_times(2))", tmp_path)
+    assert (done.returncode, done.stdout) == (0, "8\n")
+
+
+POOL = """
+import sys
+sys.path.insert(0, {folder!r})
+import kernels
+
+if __name__ == "__main__":
+    if "loky" in sys.argv:
+        from loky import ProcessPoolExecutor
+        pool = ProcessPoolExecutor(2)
+    else:
+        import multiprocessing
+        from concurrent.futures import ProcessPoolExecutor
+        pool = ProcessPoolExecutor(2, multiprocessing.get_context("spawn"))
+    with pool:
+        print(sum(pool.map(kernels.four_times, [1, 2, 3, 0.5])))
+"""
+
+
+@pytest.mark.parametrize("kind", ["spawn", "loky"])
+def test_workers_leave_it_to_the_process_that_they_work_for(kernels, tmp_path, kind):
+    pytest.importorskip("loky")
+    (tmp_path / "pool.py").write_text(POOL.format(folder=str(tmp_path)))
+    done = run(None, tmp_path, tmp_path / "pool.py", kind)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "26.0\n", "")
+
+
+def run(script, folder, *arguments):
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache")}
+    command = [sys.executable, *(["-c", script] if script else []), *map(str, arguments)]
+    return subprocess.run(command, env=environment, capture_output=True, text=True)
+
+
+def test_compiling_does_not_count_as_time_of_a_search(kernels, monkeypatch):
+    meter = Meter(Budget(max_seconds=1.0))
+    monkeypatch.setattr(compiled._compiling, "seconds", compiled.seconds_compiling() + 1000.0)
+    assert meter.elapsed < 0 and not meter.stop()
+    monkeypatch.setattr(compiled._compiling, "seconds", compiled.seconds_compiling() - 2000.0)
+    assert meter.elapsed > 900 and meter.stop()
+
+
+def test_the_working_clock_stands_still_while_numba_compiles(monkeypatch):
+    event = pytest.importorskip("numba").core.event
+    data = {"dispatcher": SimpleNamespace(py_func=None)}
+    now = [0.0]
+    monkeypatch.setattr(compiled.time, "perf_counter", lambda: now[0])
+    begin = working_seconds()
+    now[0] = 5.0
+    assert working_seconds() - begin == 5.0
+    event.start_event("numba:compile", data)
+    now[0] = 15.0
+    event.start_event("numba:compile", data)  # of a function that the first one calls
+    now[0] = 300.0
+    event.end_event("numba:compile", data)
+    assert working_seconds() - begin == pytest.approx(5.0)
+    event.end_event("numba:compile", data)
+    now[0] = 302.0
+    assert working_seconds() - begin == pytest.approx(7.0)
+    event.start_event("numba:compile", data)
+    now[0] = 400.0
+    event.end_event("numba:compile", data)
+    assert working_seconds() - begin == pytest.approx(7.0)
+
+
+def test_the_working_clock_is_a_clock_without_numba(monkeypatch):
+    monkeypatch.setattr(compiled, "_compiling", None)
+    monkeypatch.setattr(compiled.time, "perf_counter", lambda: 3.5)
+    assert working_seconds() == 3.5

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pymoo_gridpath.errors import GridError, UnreachableError
+from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError
 from pymoo_gridpath.grid import OccupancyGrid
 
 
@@ -26,11 +26,11 @@ def random_grid(seed, shape=(7, 9), density=0.35, corner_cutting=False):
         ({"occupied": [0, 1]}, "two-dimensional array of occupied cells, got 1 dimension"),
         ({"occupied": np.zeros((0, 3))}, r"at least one cell, got an array of shape \(0, 3\)"),
         ({"occupied": [[0, 2]]}, "got other values"),
-        ({"occupied": [["a", "b"]]}, "got other values"),
+        ({"occupied": [["a", "b"]]}, "expected a two-dimensional array of booleans"),
         ({"occupied": [[math.nan, 0.0]]}, "got other values"),
         ({"occupied": [[0]], "resolution": 0}, "resolution is 0, expected a positive number"),
         ({"occupied": [[0]], "resolution": math.nan}, "resolution is nan"),
-        ({"occupied": [[0]], "resolution": "wide"}, "resolution is wide"),
+        ({"occupied": [[0]], "resolution": "wide"}, "resolution is 'wide'"),
         ({"occupied": [[0]], "origin": (1,)}, "origin is"),
         ({"occupied": [[0]], "origin": (0, math.inf, 0)}, "origin is"),
         ({"occupied": [[0]], "origin": "here"}, "origin is"),
@@ -146,6 +146,7 @@ def test_shortest_lengths_and_regions_agree_with_a_plain_search(seed, corner_cut
             assert reached == ((x, y) in expected)
 
 
+@pytest.mark.filterwarnings("ignore:the robot radius")
 @given(st.integers(0, 10**6), st.floats(0, 4), st.sampled_from([0.5, 1.0, 2.0]))
 def test_inflation_occupies_what_a_disc_would_touch(seed, radius, resolution):
     grid = random_grid(seed, density=0.1).replace(resolution=resolution)
@@ -166,3 +167,63 @@ def test_inflation_occupies_what_a_disc_would_touch(seed, radius, resolution):
 def test_inflation_refuses_bad_radii(radius):
     with pytest.raises(GridError, match="robot radius"):
         random_grid(0).inflate(radius)
+
+
+@pytest.mark.parametrize(("radius", "grows"), [(0, True), (0.01, False), (0.25, False), (0.26, True)])
+def test_a_radius_without_effect_is_said(radius, grows, recwarn):
+    grid = OccupancyGrid([[0, 1, 0]], resolution=0.5, name="hall")
+    assert (grid.inflate(radius).n_occupied == 3) == (grows and radius > 0)
+    said = [str(item.message) for item in recwarn if item.category is GridPathWarning]
+    assert len(said) == (not grows)
+    assert all(f"{radius:g} m is at most half a cell of 'hall', 0.5 m wide" in text for text in said)
+
+
+def test_unknown_cells_stay_with_the_grid_and_make_no_other_grid():
+    unknown = np.array([[False, True, True], [False, False, False]])
+    grid = OccupancyGrid([[0, 1, 0], [0, 0, 0]], unknown=unknown)
+    plain = OccupancyGrid([[0, 1, 0], [0, 0, 0]])
+    unknown[:] = True
+    expected = [[False, True, True], [False, False, False]]
+    for copied in (grid, grid.inflate(1), grid.replace(name="b"), pickle.loads(pickle.dumps(grid)), copy.deepcopy(grid)):
+        assert copied.unknown.tolist() == expected and not copied.unknown.flags.writeable
+    assert plain.unknown is None and plain.inflate(1).unknown is None and pickle.loads(pickle.dumps(plain)).unknown is None
+    assert grid == plain and hash(grid) == hash(plain)
+    assert grid.replace(occupied=[[0, 1]]).unknown is None
+    with pytest.raises(GridError, match=r"unknown has the shape \(1, 2\), expected that of the grid, \(2, 3\)"):
+        grid.replace(unknown=[[0, 1]])
+
+
+WALLED = [  # rows from the bottom; the wall in the middle parts the map, and the ends of it are pockets
+    [0, 0, 0, 1, 0, 0],
+    [0, 0, 1, 1, 0, 1],
+    [0, 0, 0, 1, 0, 0],
+    [1, 0, 0, 1, 1, 0],
+]
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "message"),
+    [
+        # (2, 2) is nearer or as near, but on the other side of the wall.
+        (
+            (3, 2),
+            (5, 0),
+            r"start \(3, 2\) lies on an obstacle .*; the nearest free cell that a path joins with \(5, 0\) is \(4, 2\)",
+        ),
+        ((3, 2), (0, 0), r"the nearest free cell that a path joins with \(0, 0\) is \(2, 2\)"),
+        ((0, 0), (4, 3), r"goal \(4, 3\) .*; the nearest free cell that a path joins with \(0, 0\) is \(2, 3\)"),
+        ((0, 0), (9, 0), r"goal \(9, 0\) lies outside .*; the nearest free cell that a path joins with \(0, 0\) is \(2, 0\)"),
+        # If neither end will do, the nearest of all is as good.
+        ((3, 2), (3, 0), r"start \(3, 2\) lies on an obstacle .*; the nearest free cell is \(2, 2\)"),
+    ],
+)
+def test_the_hint_for_an_occupied_end_is_joined_with_the_other(start, goal, message):
+    with pytest.raises(GridError, match=message):
+        OccupancyGrid(WALLED).check_query(start, goal)
+
+
+def test_an_end_that_is_walled_in_has_no_hint():
+    grid = OccupancyGrid([[0, 1, 0], [1, 1, 0]])
+    with pytest.raises(GridError, match=r"goal \(1, 0\) .*; there is no free cell that a path joins with \(0, 0\)"):
+        grid.check_query((0, 0), (1, 0))
+    assert grid.nearest_free((1, 0), joined_with=(2, 0)) == (2, 1)

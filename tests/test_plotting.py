@@ -186,7 +186,7 @@ def test_the_legend_covers_no_cell(two):
 
 
 def _wide_set():
-    problem = GridPathProblem(OccupancyGrid(np.zeros((60, 240))), (3, 3), (230, 50))
+    problem = GridPathProblem(OccupancyGrid(np.zeros((60, 240))), (3, 3), (230, 50), "integer")
     return TradeOffSet.from_genes(problem, np.ones((1, problem.n_var), dtype=int))
 
 

@@ -11,9 +11,9 @@ from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament, pa
 from pymoo_gridpath.problems import random_dense_grid
 
 
-def make_problem(size=8, seed=5, corner_cutting=True, **options):
+def make_problem(size=8, seed=5, corner_cutting=True, representation="integer", **options):
     grid = random_dense_grid(size, 0.25, seed).replace(corner_cutting=corner_cutting)
-    return GridPathProblem(grid, (0, 0), (size - 1, size - 1), **options)
+    return GridPathProblem(grid, (0, 0), (size - 1, size - 1), representation, **options)
 
 
 def draw(problem, n=3000, seed=0):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability, capability_table
+from pymoo_gridpath.algorithms.display import PathOutput
 from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.factory import make_algorithm, reference_directions
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
@@ -16,6 +17,7 @@ __all__ = [
     "Capability",
     "ExactFront",
     "FirstLegalPath",
+    "PathOutput",
     "Setup",
     "SmoothMOEAD",
     "StrengthAndSmoothness",

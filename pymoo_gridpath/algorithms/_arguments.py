@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import copy
 import inspect
+import re
 from typing import Any
 
 import numpy as np
+from pymoo.core.duplicate import DuplicateElimination
+from pymoo.operators.crossover.dex import DE_REPAIRS
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, nearest
 
 # Arguments that a constructor lists, or hands on, and then sets itself or ignores.
@@ -30,6 +34,17 @@ _INEFFECTIVE: dict[str, set[str]] = {
     "GDE3PCD": _DE | {"survival"},
     "MOPSO_CD": {"archive"},
 }
+
+# Values that mean something to pymoo; it takes others as well, and heeds them not at all or in the midst of a run.
+NAMES = {"normalization": ("front", "ever", "no"), "version": ("A", "B"), "de_repair": tuple(DE_REPAIRS)}
+SHARES = ("prob_neighbor_mating", "CR", "perc_detect_change", "perc_diversity", "mu")
+LEAST = {"n_neighbors": 2, "batch_size": 1, "pop_per_ref_point": 1, "n_offsprings": 1}
+VARIANT = re.compile(r"DE/(?P<base>.+)/(?P<n_diffs>[1-9]\d?)/(?P<crossover>.+)")
+BASES_OF_VARIANTS = ("rand", "best", "current-to-best", "current-to-rand", "ranked")
+CROSSOVERS_OF_VARIANTS = ("bin", "exp")
+
+#: More members, children or directions than this no run has time for; a number beyond is a slip.
+MOST = 100_000
 
 
 def parameters(cls: type, name: str) -> dict[str, Any]:
@@ -72,10 +87,65 @@ def check(name: str, given, accepted) -> None:
             raise CapabilityError(f"{name} takes no argument {key!r}; {nearest(key, sorted(set(accepted)), 'it takes')}")
 
 
-def check_whole(owner: str, name: str, value: Any, least: int = 1) -> None:
-    """Refuse an argument of an algorithm that is no whole number, or less than the least."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise CapabilityError(f"{name} is {value!r}, expected a whole number of at least {least} for {owner}")
+def check_values(owner: str, given: dict[str, Any], accepted: dict[str, Any]) -> None:
+    """Refuse values that mean nothing to an algorithm, by what is known of each argument or else by the type of its default.
+
+    Raises
+    ------
+    CapabilityError
+        Arguments that are objects, such as operators and terminations, are left to pymoo.
+    """
+    for key, value in given.items():
+        default = accepted.get(key, inspect.Parameter.empty)
+        # RVEA without an adaptation is one of pymoo's, though not the default.
+        if value is None and (default in (None, inspect.Parameter.empty) or key == "adapt_freq"):
+            continue
+        if key in NAMES:
+            checks.one_of(key, value, NAMES[key], CapabilityError)
+        elif key == "variant":
+            _check_variant(owner, value)
+        elif key == "F":
+            _check_scale(owner, value)
+        elif key in LEAST:
+            check_whole(owner, key, value, LEAST[key], MOST)
+        elif key in SHARES or key == "adapt_freq":
+            above = key == "adapt_freq"
+            room = "above 0, at most 1" if above else "from 0 to 1"
+            checks.number(key, value, 0, 1, above=above, expected=f"a number {room} for {owner}", error=CapabilityError)
+        elif key == "eliminate_duplicates":
+            if not isinstance(value, bool | DuplicateElimination):
+                raise CapabilityError(f"{key} is {checks.shown(value)}, expected True, False or a DuplicateElimination")
+        elif isinstance(default, bool):
+            checks.flag(key, value, CapabilityError)
+        elif isinstance(default, int):
+            check_whole(owner, key, value)
+        elif isinstance(default, float):
+            checks.number(key, value, expected=f"a finite number for {owner}", error=CapabilityError)
+
+
+def check_whole(owner: str, name: str, value: Any, least: int = 1, most: int | None = None) -> None:
+    """Refuse an argument of an algorithm that is no whole number, or out of its range."""
+    room = f"at least {least}" if most is None else f"at least {least} and at most {most:,}"
+    checks.whole(name, value, least, most, expected=f"a whole number of {room} for {owner}", error=CapabilityError)
+
+
+def _check_variant(owner: str, value: Any) -> None:
+    match = VARIANT.fullmatch(value) if isinstance(value, str) else None
+    if match is None or match["base"] not in BASES_OF_VARIANTS or match["crossover"] not in CROSSOVERS_OF_VARIANTS:
+        raise CapabilityError(
+            f"variant is {checks.shown(value)}, expected such as 'DE/rand/1/bin' for {owner}: one of "
+            f"{', '.join(BASES_OF_VARIANTS)}, "
+            f"how many differences, and one of {', '.join(CROSSOVERS_OF_VARIANTS)}"
+        )
+
+
+def _check_scale(owner: str, value: Any) -> None:
+    """Refuse what is neither a scale factor of differences nor a range that it is drawn from."""
+    expected = f"a number above 0, at most 2, or a range such as (0.2, 0.8), for {owner}"
+    ends = list(value) if isinstance(value, list | tuple) or np.ndim(value) == 1 else [value, value]
+    low, high = (checks.number("F", end, 0, 2, expected=expected, error=CapabilityError) for end in (ends * 2)[:2])
+    if len(ends) != 2 or low > high or high == 0:
+        raise CapabilityError(f"F is {checks.shown(value)}, expected {expected}")
 
 
 def fresh_defaults(accepted: dict[str, Any]) -> dict[str, Any]:

@@ -44,6 +44,9 @@ class Capability:
         A package that pymoo does not install but the algorithm imports; "" for none.
     one_child : bool
         The crossover must give one child of each mating.
+    unpacks : bool
+        pymoo's own constructor takes all that `path_operators` and `default_operators` return,
+        ``cls(**path_operators(problem))``, and the run heeds it. Where it is False, `make_algorithm` fits them; see the note.
     unfit : str
         Why `make_algorithm` refuses it for every grid problem, a sentence without its subject; "" if it does not.
     note : str
@@ -66,6 +69,7 @@ class Capability:
     smoothness: bool = False
     extra: str = ""
     one_child: bool = False
+    unpacks: bool = True
     unfit: str = ""
     note: str = ""
 
@@ -74,13 +78,22 @@ class Capability:
         """Import path of pymoo's class."""
         return f"{self.module}.{self.name}"
 
+    def takes(self, n_obj: int) -> bool:
+        """Whether it takes problems of so many objectives."""
+        return self.min_objectives <= n_obj and (self.max_objectives is None or n_obj <= self.max_objectives)
+
 
 _MOO = "pymoo.algorithms.moo."
 _LOCAL_FUNCTION = "Its tournament is a local function, which pickle refuses."
 _UNSEEDED = (
     "Its tournament draws ties of the constraint violation from an unseeded generator and, a local function, does not pickle."
 )
-_DE = "Children by differential evolution; genes are rounded by our mating and repair, since pymoo's cuts off fractions."
+_DE = (
+    "Children by differential evolution; genes are rounded by our mating and repair, since pymoo's cuts off fractions. "
+    "pymoo's constructor takes no `eliminate_duplicates`."
+)
+_CONSTANT = "A constant objective counts as of the range 1, where pymoo's {}."
+_PLAIN = "pymoo's constructor takes no `eliminate_duplicates`."
 _SWARM = "moves particles in a continuous space, and grid codings are discrete"
 
 _ROWS = (
@@ -91,14 +104,20 @@ _ROWS = (
         note="The paper's; with smoothness: `SmoothnessTournament`, `RankAndSmoothness`.",
     ),
     Capability(
-        "SPEA2", _MOO + "spea2", smoothness=True, note="With smoothness: `StrengthTournament` and `StrengthAndSmoothness`."
+        "SPEA2",
+        _MOO + "spea2",
+        smoothness=True,
+        note="With smoothness: `StrengthTournament` and `StrengthAndSmoothness`. "
+        + _CONSTANT.format("compares what is no number"),
     ),
     Capability(
         "MOEAD",
         _MOO + "moead",
         needs="ref_dirs",
         smoothness=True,
-        note="pymoo's own refuses constraints; `make_algorithm` builds `SmoothMOEAD`, which compares the violation first.",
+        unpacks=False,
+        note="pymoo's own refuses constraints; `make_algorithm` builds `SmoothMOEAD`, which compares the violation first. "
+        + _PLAIN,
     ),
     Capability(
         "ParallelMOEAD",
@@ -106,7 +125,9 @@ _ROWS = (
         constraints=False,
         needs="ref_dirs",
         one_child=True,
-        note="All children of a generation at once; with two children a mating it would mix those of different matings.",
+        unpacks=False,
+        note="All children of a generation at once; with two children a mating it would mix those of different matings. "
+        + _PLAIN,
     ),
     Capability("NSGA3", _MOO + "nsga3", needs="ref_dirs", reproducible_constrained=False, pickles=False, note=_UNSEEDED),
     Capability("UNSGA3", _MOO + "unsga3", needs="ref_dirs", reproducible_constrained=False, pickles=False, note=_UNSEEDED),
@@ -139,24 +160,45 @@ _ROWS = (
         note="Stops with an error while no path is feasible, and with three objectives when it fits a value function.",
     ),
     Capability("SMSEMOA", _MOO + "sms", pickles=False, note=_LOCAL_FUNCTION),
-    Capability("AGEMOEA", _MOO + "age", extra="numba"),
-    Capability("AGEMOEA2", _MOO + "age2", extra="numba"),
-    Capability("CTAEA", _MOO + "ctaea", needs="ref_dirs", one_child=True, pickles=False, note=_LOCAL_FUNCTION),
+    Capability(
+        "AGEMOEA",
+        _MOO + "age",
+        extra="numba",
+        note=_CONSTANT.format("counts rounding as a range, or compares what is no number"),
+    ),
+    Capability(
+        "AGEMOEA2",
+        _MOO + "age2",
+        extra="numba",
+        note=_CONSTANT.format("counts rounding as a range, and stops with an error at a front of one point"),
+    ),
+    Capability(
+        "CTAEA",
+        _MOO + "ctaea",
+        needs="ref_dirs",
+        one_child=True,
+        pickles=False,
+        unpacks=False,
+        note=_LOCAL_FUNCTION
+        + " The operators' crossover gives two children, and a first population with duplicates never ends.",
+    ),
     Capability(
         "RVEA",
         _MOO + "rvea",
         needs="ref_dirs",
-        note="Needs a termination by generations or evaluations; keeps one path a direction, so the population shrinks.",
+        note="Needs a termination by generations or evaluations; keeps one path a direction, so the population shrinks. "
+        + _CONSTANT.format("makes directions that are no numbers, and stands still"),
     ),
     Capability("OmniOptimizer", _MOO + "omni", min_objectives=1, note="Keeps paths that differ in genes alone."),
-    Capability("NSDE", _MOO + "nsde", operators=False, note=_DE),
-    Capability("NSDER", _MOO + "nsder", operators=False, needs="ref_dirs", note=_DE),
-    Capability("GDE3", _MOO + "gde3", operators=False, note=_DE),
-    Capability("GDE3MNN", _MOO + "gde3", operators=False, note=_DE),
+    Capability("NSDE", _MOO + "nsde", operators=False, unpacks=False, note=_DE),
+    Capability("NSDER", _MOO + "nsder", operators=False, unpacks=False, needs="ref_dirs", note=_DE),
+    Capability("GDE3", _MOO + "gde3", operators=False, unpacks=False, note=_DE),
+    Capability("GDE3MNN", _MOO + "gde3", operators=False, unpacks=False, note=_DE),
     Capability(
         "GDE32NN",
         _MOO + "gde3",
         operators=False,
+        unpacks=False,
         unfit="stops with an error when a front has only one or two distinct members, as fronts on grids have",
         note="GDE3 or GDE3MNN do instead.",
     ),
@@ -164,6 +206,7 @@ _ROWS = (
         "GDE3PCD",
         _MOO + "gde3",
         operators=False,
+        unpacks=False,
         unfit="crashes Python (in its compiled crowding) when a front has few distinct members, as fronts on grids have",
         note="GDE3 or GDE3MNN do instead.",
     ),
@@ -171,6 +214,7 @@ _ROWS = (
         "CMOPSO",
         _MOO + "cmopso",
         operators=False,
+        unpacks=False,
         repair=False,
         whole_numbers=False,
         reproducible=False,
@@ -179,7 +223,14 @@ _ROWS = (
         note="Truncates its archive without the seed, and calls a repair without the random state that edge fixing needs.",
     ),
     Capability(
-        "MOPSO_CD", _MOO + "mopso_cd", operators=False, repair=False, whole_numbers=False, unfit=_SWARM, note="Takes no repair."
+        "MOPSO_CD",
+        _MOO + "mopso_cd",
+        operators=False,
+        unpacks=False,
+        repair=False,
+        whole_numbers=False,
+        unfit=_SWARM,
+        note="Takes no repair.",
     ),
     Capability(
         "GA",
@@ -199,6 +250,7 @@ _HEAD = (
     "Objectives",
     "Constraints",
     "Operators",
+    "Unpacks",
     "Repair",
     "Needs",
     "Whole numbers",
@@ -244,6 +296,7 @@ def _cells(row: Capability) -> tuple[str, ...]:
         objectives,
         _yes(row.constraints),
         _yes(row.operators),
+        _yes(row.unpacks),
         _yes(row.repair),
         ", ".join(needs) or "nothing",
         _yes(row.whole_numbers),

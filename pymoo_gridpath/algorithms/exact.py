@@ -9,9 +9,9 @@ from typing import Any
 
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.population import Population
-from pymoo.util.display.output import Output
 
 from pymoo_gridpath.algorithms._arguments import check
+from pymoo_gridpath.algorithms.display import PathOutput
 from pymoo_gridpath.exact import Budget, exact_front
 from pymoo_gridpath.exact.budget import Meter
 
@@ -73,7 +73,8 @@ class ExactFront(Algorithm):
     ):
         own = ("max_seconds", "max_labels", "max_memory", "watch")
         check("ExactFront", kwargs, dict.fromkeys((*inspect.signature(Algorithm).parameters, *own)))
-        super().__init__(output=kwargs.pop("output", Output()), **kwargs)
+        # It is the front that others are measured against.
+        super().__init__(output=kwargs.pop("output", PathOutput(distance=False)), **kwargs)
         self.budget = Budget(max_seconds, max_labels, max_memory, watch)
 
     def _initialize_infill(self):

@@ -21,18 +21,22 @@ from pymoo.util.reference_direction import (
     get_partition_closest_to_points,
 )
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import _arguments
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.differential import WholeNumberDE
+from pymoo_gridpath.algorithms.display import PathOutput
 from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
 from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
+from pymoo_gridpath.algorithms.rvea import FiniteAPDSurvival
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
-from pymoo_gridpath.errors import CapabilityError
+from pymoo_gridpath.errors import CapabilityError, counted
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
 from pymoo_gridpath.operators.mating import knows_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
+from pymoo_gridpath.problems import GridPathProblem
 
 _OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
 _PACKAGES = {"scikit-learn": "sklearn"}
@@ -67,7 +71,7 @@ def make_algorithm(
         cell sequences. A repair or duplicate elimination that the algorithm does not take is left out.
     **kwargs
         Other arguments of the algorithm: what its pymoo class takes and heeds, such as ``ref_dirs``, ``n_neighbors``,
-        ``termination`` or ``seed``.
+        ``termination``, ``seed`` or ``output``, by default a `PathOutput`, which ``verbose=True`` prints.
 
     Returns
     -------
@@ -95,31 +99,40 @@ def make_algorithm(
     """
     if _key(name) in ("exact", "exactfront"):
         return ExactFront(**kwargs)
-    row = find_capability(name)
+    row = find_capability(name, getattr(problem, "n_obj", None))
     refuse_problem(row, problem)
     return build(row, problem, pop_size, smoothness, operators, **kwargs)
 
 
-def find_capability(name: str) -> Capability:
+def find_capability(name: str, n_obj: int | None = None) -> Capability:
     """Return the row of the capability table that a name means.
+
+    Parameters
+    ----------
+    name : str
+    n_obj : int, optional
+        Number of objectives of the problem, for the hint.
 
     Raises
     ------
     CapabilityError
-        If there is none, with the nearest.
+        If there is none, with the nearest that suits grid problems of so many objectives.
     """
     rows = {_key(row.name): row for row in CAPABILITIES.values()}
     key = _key(name)
     if key not in rows:
-        names = {key: row.name for key, row in rows.items()} | {"exact": "exact"}
-        near = difflib.get_close_matches(key, names, n=1, cutoff=0.6)
-        hint = f"did you mean {names[near[0]]!r}?" if near else f"expected one of {', '.join([*CAPABILITIES, 'exact'])}"
-        raise CapabilityError(f"there is no algorithm {name!r}; {hint}")
+        fit = {key: row.name for key, row in rows.items() if not row.unfit and (n_obj is None or row.takes(n_obj))}
+        near = difflib.get_close_matches(key, [*fit, "exact"], n=1, cutoff=0.6)
+        hint = (
+            f"did you mean {fit.get(near[0], near[0])!r}?" if near else f"expected one of {', '.join([*fit.values(), 'exact'])}"
+        )
+        many = "" if n_obj is None else f" for {counted(n_obj, 'objective')}"
+        raise CapabilityError(f"there is no algorithm {checks.shown(name)}; {hint if near else hint + many}")
     return rows[key]
 
 
 def _key(name: str) -> str:
-    key = re.sub(r"[^a-z0-9]", "", str(name).lower())
+    key = re.sub(r"[^a-z0-9]", "", name.lower()) if isinstance(name, str) else ""
     return re.sub(r"ii$", "2", re.sub(r"iii$", "3", key))
 
 
@@ -149,9 +162,7 @@ def build(
     **kwargs,
 ) -> Algorithm:
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
-    _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(row, kwargs))
-    if kwargs.get("n_offsprings") is not None:
-        _arguments.check_whole(row.name, "n_offsprings", kwargs["n_offsprings"])
+    _arguments.check_whole(row.name, "pop_size", pop_size)
     cls = _class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     # These two classes need not be told: smoothness is an argument of this function.
@@ -159,11 +170,16 @@ def build(
     given = dict(kwargs)
     if operators is not None:
         if not isinstance(operators, Mapping):
-            raise CapabilityError(f"operators is {operators!r}, expected a mapping such as path_operators returns")
+            raise CapabilityError(f"operators is {checks.shown(operators)}, expected a mapping such as path_operators returns")
         _arguments.check("operators", operators, dict.fromkeys(_OPERATORS))
         given.update(_fitted(row, operators, accepted))
     _arguments.check(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
+    _arguments.check_values(row.name, {key: value for key, value in given.items() if key != "smoothness"}, accepted)
+    _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(row, kwargs))
+    _arguments.check_whole(row.name, "pop_size", pop_size, most=_arguments.MOST)
     settings = _arguments.fresh_defaults(accepted)
+    if isinstance(problem, GridPathProblem):
+        settings["output"] = PathOutput()
     settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
     settings |= _smoothness(row, problem, smoothness, given)
     settings |= given | _references(row, problem, pop_size, given)
@@ -179,12 +195,18 @@ def build(
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
     if row.name == "OmniOptimizer" and "selection" not in given:
         settings["selection"] = NeighborTournament()
+    if row.name == "RVEA" and given.get("survival") is None:
+        settings["survival"] = FiniteAPDSurvival(settings["ref_dirs"], given.get("alpha", accepted["alpha"]))
     settings.setdefault("evaluator", ArrayEvaluator())
     termination = settings.pop("termination", None)
     algorithm = cls(**settings)
     if termination is not None:
         # Several constructors overwrite the one they are given.
         algorithm.termination = termination
+    if row.name in ("AGEMOEA", "AGEMOEA2"):
+        # Their constructors take none. The module needs numba, as they do.
+        age = importlib.import_module("pymoo_gridpath.algorithms.age")
+        algorithm.survival = age.FiniteAGEMOEASurvival() if row.name == "AGEMOEA" else age.FiniteAGEMOEA2Survival()
     if row.name == "CTAEA":
         # It fills its archive from the first population and never ends if duplicates are missing there.
         algorithm.initialization.eliminate_duplicates = NoDuplicateElimination()
@@ -198,10 +220,9 @@ def _least_pop_size(row: Capability, given: Mapping[str, Any]) -> int:
     if row.operators:
         return 1
     # Differential evolution draws distinct parents: the target, the base, and two for each difference.
-    match = re.fullmatch(r"DE/(.+)/(\d+)/.+", str(given.get("variant", "DE/rand/1/bin")))
-    if match is None:
-        return 1
-    return 2 + 2 * (int(match[2]) + ("-to-" in match[1]))
+    match = _arguments.VARIANT.fullmatch(given.get("variant", "DE/rand/1/bin"))
+    assert match is not None
+    return 2 + 2 * (int(match["n_diffs"]) + ("-to-" in match["base"]))
 
 
 def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
@@ -210,9 +231,10 @@ def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
     Parameters
     ----------
     n_obj : int
+        Number of objectives, 1 to 100.
     n_points : int
-        At most how many; the largest simplex lattice within is taken. With two objectives there are exactly ``n_points``, with
-        three 1, 3, 6, 10, ..., 91, ...
+        At most how many, up to 100,000; the largest simplex lattice within is taken. With two objectives there are exactly
+        ``n_points``, with three 1, 3, 6, 10, ..., 91, ...
 
     Returns
     -------
@@ -221,7 +243,7 @@ def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
     Raises
     ------
     CapabilityError
-        If n_points is less than n_obj, the directions of the objectives themselves.
+        If either is no whole number in its range, or n_points is less than n_obj, the directions of the objectives themselves.
 
     References
     ----------
@@ -235,6 +257,8 @@ def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
     >>> len(reference_directions(3, 100))
     91
     """
+    _arguments.check_whole("reference directions", "n_obj", n_obj, 1, 100)
+    _arguments.check_whole("reference directions", "n_points", n_points, 1, _arguments.MOST)
     if n_points < n_obj:
         raise CapabilityError(f"{n_obj} objectives need at least {n_obj} reference directions, got room for {n_points}")
     n_partitions = get_partition_closest_to_points(n_points, n_obj)
@@ -280,8 +304,8 @@ def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, 
 
 
 def _smoothness(row: Capability, problem, smoothness: bool | None, given: Mapping[str, Any]) -> dict[str, Any]:
-    if smoothness is not None and not isinstance(smoothness, bool | np.bool_):
-        raise CapabilityError(f"smoothness is {smoothness!r}, expected True, False or None")
+    if smoothness is not None:
+        smoothness = checks.flag("smoothness", smoothness, CapabilityError, expected="True, False or None")
     own = [key for key in ("selection", "survival") if key in given]
     if smoothness and not row.smoothness:
         able = ", ".join(other.name for other in CAPABILITIES.values() if other.smoothness)
@@ -338,7 +362,8 @@ def _ref_dirs(row: Capability, problem, pop_size: int, ref_dirs) -> np.ndarray:
 
 
 def _rows(name: str, values, problem) -> np.ndarray:
-    values = np.array(values, dtype=float)
+    expected = f"rows of {problem.n_obj} finite numbers, one an objective"
+    values = checks.array(name, values, expected=expected, finite=True, error=CapabilityError).astype(float)
     if values.ndim != 2 or values.shape[1] != problem.n_obj or not len(values):
         raise CapabilityError(f"{name} has shape {values.shape}, expected rows of {problem.n_obj} values, one an objective")
     return values

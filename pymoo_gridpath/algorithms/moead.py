@@ -15,6 +15,7 @@ from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators.individuals import ArrayPopulation
 from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection, knows_arrays
 from pymoo_gridpath.operators.parameters import number
+from pymoo_gridpath.operators.survival import turns_of
 
 #: Decomposed values that differ by no more than this share of 1 + their size are a tie.
 TIE = 1e-9
@@ -41,7 +42,7 @@ class SmoothMOEAD(MOEAD):
     ref_dirs : numpy.ndarray, shape (n_directions, n_obj)
         Reference directions, two or more; their number is the population size.
     smoothness : bool, default True
-        Whether to break ties by ``turn``, which the problem then has to set.
+        Whether to break ties by ``turn``, which the problem then has to set; where it does not, a warning says so.
     normalize : bool, default True
         Whether to decompose objectives scaled to the range from the ideal point to the nadir point, since length and
         vulnerability have different ranges. The ideal point is the best value of each objective so far among feasible
@@ -164,7 +165,7 @@ class SmoothMOEAD(MOEAD):
         """Return the genes, objectives, constraint violations and turns of individuals; turns are 0 where they do not count."""
         pop = pop.view(ArrayPopulation)
         X, F, cv = pop.get("X", "F", "CV")
-        turn = pop.get("turn").astype(float) if self.smoothness else np.zeros(len(pop))
+        turn = turns_of(pop, "SmoothMOEAD") if self.smoothness else np.zeros(len(pop))
         return X, F.astype(float), cv[:, 0], turn
 
     def _move_ideal(self, F: np.ndarray, feasible: np.ndarray) -> None:

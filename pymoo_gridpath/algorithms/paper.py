@@ -9,8 +9,8 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.core.termination import Termination
 from pymoo.termination.max_gen import MaximumGenerationTermination
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.factory import make_algorithm
-from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.operators import paper_operators
@@ -91,8 +91,8 @@ def ahmed_deb_2013(
     Soft Computing 17(7), 2013.
     """
     for name, value in (("pop_size", pop_size), ("n_gen", n_gen)):
-        if value < 1:
-            raise GridPathError(f"{name} is {value}, expected at least 1")
+        checks.whole(name, value, 1)
+    checks.instance("termination", termination, Termination, " of pymoo", optional=True)
     made = make_objectives(objectives)
     if len(made) == 1:
         problem_options.setdefault("obstacles", "constraint")

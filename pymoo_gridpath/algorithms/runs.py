@@ -7,10 +7,15 @@ from collections.abc import Callable
 
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.callback import Callback
+from pymoo.core.problem import Problem
 from pymoo.core.result import Result
 from pymoo.core.termination import Termination
+from pymoo.termination import get_termination
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+
+_MOST_RUNS = 100_000
 
 
 def minimize_runs(
@@ -51,14 +56,19 @@ def minimize_runs(
     Raises
     ------
     GridPathError
-        If ``n_runs`` is less than one.
+        If an argument is of another kind or out of its range; ``n_runs`` is 1 to 100,000.
 
     References
     ----------
     Ahmed and Deb (2013), section 5: ten runs, whose fronts are merged.
     """
-    if n_runs < 1:
-        raise GridPathError(f"n_runs is {n_runs}, expected at least 1")
+    checks.instance("problem", problem, Problem)
+    checks.instance("algorithm", algorithm, Algorithm)
+    _check_termination(termination)
+    n_runs = checks.whole("n_runs", n_runs, 1, _MOST_RUNS)
+    seed = checks.whole("seed", seed, 0)
+    checks.instance("callback", callback, Callback, optional=True)
+    checks.function("observe", observe, "a function of the number of the run and the algorithm", optional=True)
     results = []
     for k in range(n_runs):
         run = copy.deepcopy(algorithm)
@@ -76,3 +86,25 @@ def minimize_runs(
         if stopped:
             break
     return results
+
+
+def _check_termination(termination) -> None:
+    """Refuse what pymoo cannot make a termination of."""
+    if termination is None or isinstance(termination, Termination):
+        return
+    expected = "a pymoo termination or a tuple such as ('n_gen', 100)"
+    if not isinstance(termination, tuple) or not termination:
+        raise GridPathError(f"termination is {checks.shown(termination)}, expected {expected}")
+    name, *arguments = termination
+    if not isinstance(name, str):
+        raise GridPathError(f"termination is {checks.shown(termination)}, expected {expected}")
+    if name.startswith("n_"):
+        if len(arguments) != 1:
+            raise GridPathError(f"termination is {checks.shown(termination)}, expected {expected}")
+        checks.number(
+            f"the number of the termination {checks.shown(name)}", *arguments, 0.0, infinite=True, expected="zero or more"
+        )
+    try:
+        get_termination(name, *arguments)
+    except Exception:  # pymoo raises bare ones
+        raise GridPathError(f"termination is {checks.shown(termination)}, expected {expected}") from None

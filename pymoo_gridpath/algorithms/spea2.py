@@ -13,7 +13,7 @@ from pymoo.util.misc import vectorized_cdist
 from scipy.spatial.distance import cdist
 
 from pymoo_gridpath.operators.selection import compare, decide, draw_as_pymoo, winners
-from pymoo_gridpath.operators.survival import ArraySurvival
+from pymoo_gridpath.operators.survival import ArraySurvival, turns_of
 
 #: Distances in scaled objectives that differ by no more than this are equal.
 SAME_DISTANCE = 1e-9
@@ -38,6 +38,10 @@ class StrengthAndSmoothness(ArraySurvival):
     ``SPEA_R`` (raw fitness) and ``SPEA_D`` (density, below 1), smaller is better. Infeasible individuals come after all
     feasible ones, in order of their constraint violation.
 
+    Needs `StrengthTournament` as ``selection`` beside it, for pymoo's own compares the fitness, in which turn has no part. And
+    a problem that sets ``turn``, such as `GridPathProblem`; without it, it warns, and distances decide alone. The type of the
+    genes does not matter.
+
     References
     ----------
     E. Zitzler, M. Laumanns and L. Thiele, "SPEA2: improving the strength Pareto evolutionary algorithm", TIK report 103, ETH
@@ -48,7 +52,7 @@ class StrengthAndSmoothness(ArraySurvival):
         super().__init__(filter_infeasible=True)
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
-        F, turn = pop.get("F").astype(float), pop.get("turn").astype(float)
+        F, turn = pop.get("F").astype(float), turns_of(pop, type(self).__name__)
         raw, front = _strength(F)
         scaled = _scale(F, F[front])
         density = 1.0 / (_kth_distance(scaled) + 2.0)
@@ -62,6 +66,9 @@ class StrengthAndSmoothness(ArraySurvival):
 
 class ArraySPEA2Survival(ArraySurvival, SPEA2Survival):
     """The original SPEA2's environmental selection, pymoo's with the same survivors in the same order, and a fast truncation.
+
+    It departs from pymoo's only where an objective is constant: there pymoo divides by an empty range, the fitness of all is no
+    number, and the run keeps whom it should lose; here that objective has the range 1.
 
     Parameters
     ----------
@@ -104,9 +111,9 @@ class ArraySPEA2Survival(ArraySurvival, SPEA2Survival):
         if self.norm is None:
             self.norm = HyperplaneNormalization(F.shape[1])
         self.norm.update(F)
-        # As in pymoo, distances are no numbers while the range is empty, and the order of the individuals decides.
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return (F - self.norm.ideal_point) / (self.norm.nadir_point - self.norm.ideal_point)
+        span = self.norm.nadir_point - self.norm.ideal_point
+        # Over an empty range pymoo's distances are no numbers, and the order of the individuals decides who survives.
+        return (F - self.norm.ideal_point) / np.where(span == 0, 1.0, span)
 
 
 class StrengthTournament(TournamentSelection):
@@ -115,18 +122,19 @@ class StrengthTournament(TournamentSelection):
     Of two individuals the one with the smaller constraint violation wins; if both are feasible the one with the smaller raw
     fitness, of equal ones that with the smaller total turn, then that in the less dense region; and else either.
 
-    Needs `StrengthAndSmoothness` as survival, and a problem that sets ``turn``.
+    Needs `StrengthAndSmoothness` as survival beside it, and a problem that sets ``turn``, without which that survival warns and
+    turns count as equal. The type of the genes does not matter.
     """
 
-    def __init__(self, **kwargs):
-        super().__init__(func_comp=by_strength_turn_density, **kwargs)
+    def __init__(self):
+        super().__init__(func_comp=by_strength_turn_density)
 
 
 class FitnessTournament(TournamentSelection):
     """The original SPEA2's binary tournament, pymoo's with the same draws: violation, then fitness; the smaller wins."""
 
-    def __init__(self, **kwargs):
-        super().__init__(func_comp=by_fitness, **kwargs)
+    def __init__(self):
+        super().__init__(func_comp=by_fitness)
 
 
 def by_strength_turn_density(pop, P: np.ndarray, random_state=None, **kwargs) -> np.ndarray:

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.decision.provenance import plain
-from pymoo_gridpath.errors import GridPathError, counted
+from pymoo_gridpath.errors import GridPathError, counted, visible
 
 FORMAT = "pymoo_gridpath trade-off set"
 FORMAT_VERSION = 1
@@ -71,28 +72,35 @@ def load_json(path: str | os.PathLike[str]) -> dict:
     GridPathError
         If the file cannot be read or is no trade-off set of this format.
     """
+    checks.file_path("path", path)
+    shown = visible(path)
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
-        raise GridPathError(f"{path}: the file cannot be read ({error.strerror}), expected a trade-off set") from None
-    except ValueError as error:
-        raise GridPathError(f"{path}: the file is not JSON ({error}), expected a trade-off set") from None
+        raise GridPathError(f"{shown}: the file cannot be read ({error.strerror}), expected a trade-off set") from None
+    except (ValueError, RecursionError) as error:
+        why = f"line {error.lineno}" if isinstance(error, json.JSONDecodeError) else "not text, or nested too deep"
+        raise GridPathError(f"{shown}: the file is not JSON ({why}), expected a trade-off set") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise GridPathError(f"{path}: the file holds no trade-off set, expected one with the format {FORMAT!r}")
+        raise GridPathError(f"{shown}: the file holds no trade-off set, expected one with the format {FORMAT!r}")
     if content.get("format_version") != FORMAT_VERSION:
-        raise GridPathError(f"{path}: format_version is {content.get('format_version')!r}, expected {FORMAT_VERSION}")
+        raise GridPathError(
+            f"{shown}: format_version is {checks.shown(content.get('format_version'))}, expected {FORMAT_VERSION}"
+        )
     records = content.get("paths")
     if not isinstance(records, list) or not records:
-        raise GridPathError(f"{path}: paths is missing or empty, expected a list of records")
+        raise GridPathError(f"{shown}: paths is missing or empty, expected a list of records")
     for k, record in enumerate(records):
         missing = [field for field in _FIELDS if not isinstance(record, dict) or field not in record]
         if missing:
-            raise GridPathError(f"{path}: path {k} has no {missing[0]!r}, expected the fields {', '.join(_FIELDS)}")
+            raise GridPathError(f"{shown}: path {k} has no {missing[0]!r}, expected the fields {', '.join(_FIELDS)}")
     return content
 
 
 def table_text(trade_off, max_rows: int | None = None) -> str:
     """Return a table for terminals; see `TradeOffSet.table`."""
+    if max_rows is not None:
+        max_rows = checks.whole("max_rows", max_rows, 0)
     measures = trade_off.measures
     rows = _rows_shown(trade_off, max_rows)
     columns = [["path", *(str(k) for k in rows)]]
@@ -107,6 +115,12 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     hidden = len(trade_off) - len(rows)
     if hidden:
         lines.append(f"... and {hidden} more")
+    if trade_off.least_length is not None:
+        metres = trade_off.least_length * trade_off.problem.grid.resolution
+        shortest = f"{trade_off.least_length:.3f} ({metres:.3f} m)"
+        lines.append(f"for comparison, the shortest of all paths on this grid has length {shortest}")
+    if trade_off.advice:
+        lines.append(f"NOTE: {trade_off.advice}")
     return "\n".join(lines)
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
+
 
 def knee_point(F: np.ndarray) -> int:
     """Return the index of the knee of a set of mutually non-dominated points.
@@ -23,6 +26,11 @@ def knee_point(F: np.ndarray) -> int:
         Of points equally far (to 1e-12), the first. A single point is its own knee. Two points both lie on the line, so the
         first is returned; so is the first of the extreme points where a front of two objectives bulges away from the ideal.
 
+    Raises
+    ------
+    GridPathError
+        If F is no such array.
+
     References
     ----------
     I. Das, "On characterizing the 'knee' of the Pareto curve based on normal-boundary intersection", Structural
@@ -34,7 +42,10 @@ def knee_point(F: np.ndarray) -> int:
     >>> knee_point([[0, 10], [1, 2], [8, 1], [10, 0]])
     1
     """
-    F = np.asarray(F, dtype=float)
+    expected = "finite numbers of shape (N, n_obj), at least one row and one column"
+    F = checks.array("F", F, (None, None), expected=expected, finite=True).astype(float)
+    if not F.size:
+        raise GridPathError(f"F is {checks.shown(F)}, expected {expected}")
     low, spread = F.min(axis=0), np.ptp(F, axis=0)
     scaled = (F - low) / np.where(spread > 0, spread, 1.0)
     distance = (1.0 - scaled.sum(axis=1)) / np.sqrt(F.shape[1])

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from pymoo_gridpath.fields import BoxedField
-from pymoo_gridpath.objectives import Vulnerability
+from pymoo_gridpath.objectives import Vulnerability, boxed_field_of
 from pymoo_gridpath.representations.base import representation_of
 
 
@@ -35,10 +33,8 @@ class PathMeasures:
         given = [objective for objective in problem.objectives if isinstance(objective, Vulnerability)]
         self.problem = problem
         self._objective = given[0] if given else Vulnerability()
-        grid, box = problem.grid, problem.representation.box
-        self.field = self._objective.field_in(grid, box)
-        whole = box == grid.whole
-        field = self.field if whole else BoxedField(self.field, box, grid.width, partial(self._objective.field, grid))
+        field = boxed_field_of(self._objective, problem.grid, problem.representation.box)
+        self.field = field.inside if isinstance(field, BoxedField) else field
         self._sums = problem.representation.prepare(field)
 
     def vulnerability(self, paths) -> np.ndarray:

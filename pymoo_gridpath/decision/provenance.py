@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.exact import ExactResult
 from pymoo_gridpath.grid import OccupancyGrid
 
@@ -20,6 +23,15 @@ def grid_digest(grid: OccupancyGrid) -> str:
     digest = hashlib.sha256(f"{grid.width} {grid.height}\n".encode())
     digest.update(np.ascontiguousarray(grid.occupied))
     return digest.hexdigest()
+
+
+def describe_source(grid: OccupancyGrid) -> dict:
+    """Return what tells a map as it was read from others; ``unknown_cells`` is None where its format knows none."""
+    return {
+        "occupied_cells": grid.n_occupied,
+        "unknown_cells": None if grid.unknown is None else int(grid.unknown.sum()),
+        "sha256": grid_digest(grid),
+    }
 
 
 def describe_problem(problem) -> dict:
@@ -92,17 +104,26 @@ def _search(algorithm) -> dict:
 
 def plain(value):
     """Return a value as what strict JSON can hold: numbers that are not finite become None, unknown objects their text."""
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
+    try:
+        return _plain(value)
+    except RecursionError:
+        raise GridPathError(f"{shown(value)} holds itself, expected plain data for a file") from None
+
+
+def _plain(value):
+    if isinstance(value, Mapping):
+        return {
+            str(key) if isinstance(key, str | int | float | None) else shown(key): _plain(item) for key, item in value.items()
+        }
     if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
+        return _plain(value.tolist())
     if isinstance(value, list | tuple | set | frozenset):
-        return [plain(item) for item in value]
+        return [_plain(item) for item in value]
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):
         return value if math.isfinite(value) else None
-    return str(value) if isinstance(value, Path) else repr(value)
+    return str(value) if isinstance(value, Path) else shown(value)
 
 
 def _scalars(thing) -> dict:

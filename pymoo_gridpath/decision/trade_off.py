@@ -12,17 +12,21 @@ from typing import Any
 import moocore
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.decision import export, provenance
 from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
-from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.representations.base import MonotoneRepresentation, representation_of
 from pymoo_gridpath.versions import versions
 
 #: What members of a trade-off set go by, in the order in which tables and figures show them.
 NAMES = ("shortest", "safest", "smoothest", "knee")
+
+# By which share the shortest path found may be longer than the shortest of all before that is remarked on.
+_MUCH_LONGER = 0.05
 
 _LEAST = {"shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
 
@@ -126,17 +130,19 @@ class TradeOffSet:
 
     def __init__(self, problem, X, meta: dict | None = None):
         measures = PathMeasures(problem)
-        X = np.atleast_2d(np.asarray(X))
+        if meta is not None:
+            meta = provenance.plain(checks.instance("meta", meta, Mapping))
+        X = np.atleast_2d(checks.array("X", X, kinds="biufO", expected="rows of genes"))
         if X.size == 0:
             raise GridPathError("there are no paths to choose from, expected at least one row of genes")
-        if X.dtype.kind == "f":
+        if X.dtype.kind in "fO":
             X = problem.representation.genes(X)
         keep, self.feasible = _select(problem, measures, X)
         self.problem = problem
         self.X = X[keep]
         self.paths = problem.decode(self.X)
         self.F = np.asarray(problem.score(self.paths), dtype=float)
-        self.meta = provenance.plain(meta or {})
+        self.meta = meta or {}
         self._cells = [np.asarray(self.paths.cells(k)) for k in range(len(keep))]
         self.measures = self._measure(measures)
 
@@ -157,7 +163,8 @@ class TradeOffSet:
         GridPathError
             If there is no Result, one holds no paths, or they belong to different problems.
         """
-        runs = [results] if hasattr(results, "opt") else list(results)
+        runs = [results] if hasattr(results, "opt") else checks.items("results", results, "a Result of pymoo, or several")
+        _check_settings(settings)
         if not runs:
             raise GridPathError("there are no Results, expected one or more")
         problem = _common_problem(runs)
@@ -181,6 +188,7 @@ class TradeOffSet:
             If there are no rows, or they do not fit the problem.
         """
         representation_of(problem)
+        _check_settings(settings)
         return cls(problem, X, _meta(problem, settings, []))
 
     def _measure(self, measures: PathMeasures) -> dict[str, np.ndarray]:
@@ -221,12 +229,13 @@ class TradeOffSet:
         GridPathError
             If there is no such name.
         """
-        if name not in self.named:
-            raise GridPathError(f"there is no path {name!r}, expected one of {', '.join(self.named)}")
+        if not (isinstance(name, str) and name in self.named):
+            raise GridPathError(f"there is no path {checks.shown(name)}, expected one of {', '.join(self.named)}")
         return self.named[name]
 
     def names(self, index: int) -> tuple[str, ...]:
         """Return the names that the path at an index goes by, none for most, and none if the paths are not legal."""
+        index = checks.whole("index", index, 0, len(self) - 1)
         return tuple(name for name, k in self.named.items() if k == index and self.feasible)
 
     @property
@@ -287,8 +296,37 @@ class TradeOffSet:
             return f"no path keeps the potential limit of {self.problem.potential_limit:g}"
         return f"no path is legal; these cross {counted(crossed, 'occupied cell')}, the fewest found"
 
+    @functools.cached_property
+    def least_length(self) -> float | None:
+        """Length in cells of the shortest of all legal paths on the grid in any coding; None if length is no objective."""
+        if "length" not in self.objective_names:
+            return None
+        x, y = self.problem.goal
+        return float(self.problem.grid.shortest_lengths(self.problem.start)[y, x])
+
+    @property
+    def advice(self) -> str:
+        """What to try where the shortest path found is over 5 % longer than the shortest of all; empty where it is not.
+
+        It is empty, too, if length is no objective, if the paths are not legal, and under a potential limit, which the shortest
+        of all may not keep.
+        """
+        if self.least_length is None or not self.feasible or self.problem.potential_limit is not None:
+            return ""
+        excess = float(self.measures["length"].min()) / self.least_length - 1.0
+        if excess <= _MUCH_LONGER:
+            return ""
+        if isinstance(self.problem.representation, MonotoneRepresentation):
+            attempts = "the representation 'cells', which codes every path, path-aware operators or more generations"
+        else:
+            attempts = "path-aware operators, more generations or the exact front"
+        return f"the shortest path found is {excess:.0%} longer than the shortest of all; try {attempts}"
+
     def table(self, max_rows: int | None = None) -> str:
         """Return a plain text table, one line a path, with the names of those that have one.
+
+        Where length is an objective a line says how long the shortest of all paths is, and another, if those found are much
+        longer, what to try: `least_length` and `advice`.
 
         Parameters
         ----------
@@ -317,6 +355,13 @@ class TradeOffSet:
         reads it.
         """
         return write_whole(path, export.json_text(self).encode())
+
+
+def check_set(trade_off: TradeOffSet) -> TradeOffSet:
+    """Return a trade-off set if it is one, or has what figures ask of one."""
+    if all(hasattr(trade_off, name) for name in ("problem", "F", "objective_names", "feasible", "index")):
+        return trade_off
+    return checks.instance("trade_off", trade_off, TradeOffSet)
 
 
 def _select(problem, measures: PathMeasures, X: np.ndarray) -> tuple[np.ndarray, bool]:
@@ -364,6 +409,10 @@ def _common_problem(runs: Sequence) -> Any:
 
 
 _MUST_AGREE = ("representation", "axis", "max_cells", "objectives", "potential_limit")
+
+
+def _check_settings(settings: Mapping | None) -> None:
+    checks.instance("settings", settings, Mapping, optional=True)
 
 
 def _meta(problem, settings: Mapping | None, runs: list[dict]) -> dict:

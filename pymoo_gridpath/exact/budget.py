@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import psutil
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath import checks
+from pymoo_gridpath.compiled import working_seconds
 
 # Share of the free memory that a search may take by default; the rest is for its end, and for others.
 _SHARE = 0.7
@@ -48,7 +47,8 @@ class Budget:
     Attributes
     ----------
     max_seconds : float, optional
-        Asked many times a second if kernels are compiled, else about once a second.
+        Of wall time, without that of compiling kernels at their first use. Asked many times a second if kernels are compiled,
+        else about once a second.
     max_labels : int, optional
         Labels open and closed at a time.
     max_memory : int, optional
@@ -70,10 +70,10 @@ class Budget:
     def __post_init__(self):
         for name in ("max_seconds", "max_labels", "max_memory"):
             value = getattr(self, name)
-            if value is not None and not (isinstance(value, int | float | np.integer | np.floating) and value >= 0):
-                raise GridPathError(f"{name} is {value!r}, expected a number, zero or more")
-        if not (self.watch is None or callable(self.watch)):
-            raise GridPathError(f"watch is {self.watch!r}, expected a function of one argument, the Meter")
+            # A whole number larger than a float holds is a budget that is never used up.
+            if value is not None and not (isinstance(value, int) and not isinstance(value, bool) and value > 2**63):
+                checks.number(name, value, 0.0, infinite=True, expected="a number, zero or more")
+        checks.function("watch", self.watch, "a function of one argument, the Meter", optional=True)
 
 
 class Meter:
@@ -94,7 +94,7 @@ class Meter:
     """
 
     def __init__(self, budget: Budget):
-        self.begin = time.perf_counter()
+        self.begin = working_seconds()
         self.seconds = math.inf if budget.max_seconds is None else budget.max_seconds
         self.labels = _MOST_LABELS if budget.max_labels is None else min(budget.max_labels, _MOST_LABELS)
         self.memory = _SHARE * free_memory() if budget.max_memory is None else min(budget.max_memory, _MOST_MEMORY)
@@ -105,8 +105,8 @@ class Meter:
 
     @property
     def elapsed(self) -> float:
-        """Seconds since the search began."""
-        return time.perf_counter() - self.begin
+        """Seconds since the search began, without those of compiling."""
+        return working_seconds() - self.begin
 
     def pops(self, n_labels: int, at_most: int) -> int:
         """Return how many labels may be popped before the next check; each opens up to eight others."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.grid import SQRT2, Box, OccupancyGrid
-from pymoo_gridpath.objectives import Length, Objective, Turn
+from pymoo_gridpath.objectives import Length, Objective, Turn, field_of
 from pymoo_gridpath.paths import TURN_UNIT
 from pymoo_gridpath.search import DIAGONAL, turn_units
 
@@ -84,8 +84,10 @@ def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = N
     Raises
     ------
     CapabilityError
-        If an objective does not add up along a path: it is neither `Length` nor `Turn` and has no field, or a field that is
-        negative or not finite; or if the sum of a field over all usable cells is not finite.
+        If an objective does not add up along a path, since it is neither `Length` nor `Turn` and has no field; or if the sum of
+        a field over all usable cells is not finite.
+    GridPathError
+        If a field is no field of costs, see `pymoo_gridpath.objectives.field_of`.
     """
     box = grid.whole if box is None else box
     usable = ~grid.occupied[box.slices].ravel() if usable is None else usable
@@ -106,18 +108,13 @@ def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = N
 
 def _field(objective: Objective, grid: OccupancyGrid, usable: np.ndarray, box: Box) -> tuple[np.ndarray, float, bool]:
     """Return the costs of cells, their unit, and whether they had to be rounded."""
-    values = objective.field_in(grid, box)
+    values = field_of(objective, grid, box)
     if values is None:
         raise CapabilityError(
             f"the objective {objective.name!r} has no field, so it does not add up along a path and no exact front is known; "
             f"expected length, turn, or objectives that are sums of a field over the visited cells"
         )
     free = np.where(usable, np.ravel(values), 0.0)
-    if not np.isfinite(free).all() or free.min() < 0:
-        raise CapabilityError(
-            f"the field of the objective {objective.name!r} has negative or infinite values in free cells, expected costs of "
-            f"zero or more for an exact front"
-        )
     with np.errstate(over="ignore"):
         total = free.sum()
     if not np.isfinite(total):

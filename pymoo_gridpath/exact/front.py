@@ -8,6 +8,7 @@ from typing import NamedTuple
 import moocore
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import Costs, integer_costs
@@ -100,8 +101,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     (True, [[5.41, 0.66]])
     """
     moves = representation_of(problem).moves
-    if not (budget is None or isinstance(budget, Budget)):
-        raise GridPathError(f"budget is {budget!r}, expected a Budget")
+    checks.instance("budget", budget, Budget, optional=True)
     if problem.n_obj > 3:
         raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
     if moves.n_cells >= _MOST_CELLS:

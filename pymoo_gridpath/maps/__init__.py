@@ -11,9 +11,10 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._files import MAX_CELLS, require_file
+from pymoo_gridpath.maps._files import MAX_CELLS, require_file, warn
 from pymoo_gridpath.maps.array import MAGIC, read_npy
 from pymoo_gridpath.maps.image import read_image
 from pymoo_gridpath.maps.movingai import Query, read_movingai, read_scen
@@ -84,6 +85,11 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
     MapError
         If there is no such file or map, it cannot be read, or its format does not know an option.
 
+    Warns
+    -----
+    MapWarning
+        If ``unknown`` is given and the map has no unknown cell, and as the readers.
+
     See Also
     --------
     read_movingai, read_ros, read_image, read_npy, read_text, load_shipped
@@ -93,7 +99,7 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
     >>> load_map("warehouse")
     <OccupancyGrid 'warehouse': 60 x 40 cells of 0.5 m, 541 occupied, corners may not be cut>
     """
-    name = os.fspath(path)
+    name = checks.file_path("path", path)
     shipped = not os.path.isfile(path) and (name in shipped_names() or _is_bare(name))
     kind = "a plain text map" if shipped else map_format(path)
     reader = _FORMATS[kind]
@@ -102,7 +108,10 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
     for key in options:
         if key not in known:
             raise MapError(path, f"{kind} does not take the option {key!r}, expected one of {', '.join(known)}")
-    return load_shipped(name, **options) if shipped else reader(path, **options)
+    grid = load_shipped(name, **options) if shipped else reader(path, **options)
+    if "unknown" in options and grid.unknown is not None and not grid.unknown.any():
+        warn(path, "the map has no unknown cell, so that the option 'unknown' has no effect")
+    return grid
 
 
 def _is_bare(name: str) -> bool:

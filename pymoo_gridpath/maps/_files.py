@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import reprlib
+import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pymoo_gridpath.errors import MapError
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import MapError, MapWarning
 from pymoo_gridpath.grid import OccupancyGrid
 
 MAX_CELLS = 100_000_000
@@ -23,19 +26,21 @@ _repr.maxlevel, _repr.maxstring = 2, 60
 
 def require_file(path: str | os.PathLike[str]) -> Path:
     """Return the path if it names a file, else raise MapError."""
+    checks.file_path("path", path)
     if os.path.isfile(path):
         return Path(path)
     found = "found a directory" if os.path.isdir(path) else "no such file"
     raise MapError(path, f"{found}, expected a map file")
 
 
-def read_string(path: str | os.PathLike[str]) -> str:
-    """Return the text of a UTF-8 file, line ends as newlines, or raise MapError."""
+def read_string(path: str | os.PathLike[str], limit: int | None = None) -> str:
+    """Return the text of a UTF-8 file of at most ``limit`` bytes, line ends as newlines, or raise MapError."""
     file = require_file(path)
+    # A text map needs a byte a cell, a line end a row and a short header.
+    limit = 2 * MAX_CELLS if limit is None else limit
     try:
-        # A text map needs a byte a cell, a line end a row and a short header.
-        if file.stat().st_size > 2 * MAX_CELLS:
-            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {2 * MAX_CELLS} for a text file")
+        if file.stat().st_size > limit:
+            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {limit} for a text file")
         data = file.read_bytes()
     except OSError as error:
         raise MapError(path, f"the file cannot be read ({error.strerror}), expected a readable map file") from None
@@ -45,6 +50,14 @@ def read_string(path: str | os.PathLike[str]) -> str:
         line = data.count(b"\n", 0, error.start) + 1
         raise MapError(path, f"found the byte 0x{data[error.start]:02x}, expected UTF-8 text", line) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def warn(path: str | os.PathLike[str], message: str) -> None:
+    """Warn that a map may have been meant otherwise, at the line that called this package."""
+    level, frame = 2, sys._getframe(1)
+    while (outer := frame.f_back) is not None and frame.f_globals.get("__name__", "").startswith("pymoo_gridpath."):
+        level, frame = level + 1, outer
+    warnings.warn(MapWarning(path, message), stacklevel=level)
 
 
 def shorten(value: object) -> str:
@@ -62,7 +75,7 @@ def check_size(path: str | os.PathLike[str], width: int, height: int, line: int 
 
 def check_unknown(path: str | os.PathLike[str], unknown: str) -> None:
     """Raise MapError unless ``unknown`` is one of its two choices."""
-    if unknown not in UNKNOWN_CHOICES:
+    if not (isinstance(unknown, str) and unknown in UNKNOWN_CHOICES):
         raise MapError(path, f"the option unknown is {shorten(unknown)}, expected 'occupied' or 'free'")
 
 

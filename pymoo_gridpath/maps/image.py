@@ -10,12 +10,20 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.errors import MapError, visible
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._files import check_size, check_unknown, make_grid, require_file, shorten
+from pymoo_gridpath.maps._files import check_size, check_unknown, make_grid, require_file, shorten, warn
+from pymoo_gridpath.maps._ros_yaml import yaml_of_image
 
 # Raster formats only: Pillow would hand some others, such as EPS, to outside programs.
 FORMATS = ("PNG", "PPM", "BMP", "GIF", "JPEG", "TIFF", "WEBP")
+
+_WHITE_16 = 2**16 - 1
+_GDAL_NODATA = 42113
+# Thousandths of red, green and blue.
+_LUMINANCE = np.array([299, 587, 114], dtype=np.uint32)
+# Pixels that are turned into grey together, which bounds the memory that it takes.
+_BLOCK = 2**20
 
 
 @dataclass(frozen=True)
@@ -24,20 +32,41 @@ class Pixels:
 
     Parameters
     ----------
-    shade : numpy.ndarray of unsigned int, shape (height, width)
-        Sum of the colour channels, 0 for black.
+    channels : numpy.ndarray of unsigned int, shape (height, width) or (height, width, 3)
+        Grey, or red, green and blue; 0 for black.
     white : int
-        The shade of white, so that ``shade / white`` is the mean of the colour channels from 0 to 1.
+        The value of white in each channel: 255, or 65535 for 16 bits.
     alpha : numpy.ndarray of unsigned int, shape (height, width), or None
         0 for transparent. None if every pixel is opaque.
     opaque : int
         The alpha of an opaque pixel.
     """
 
-    shade: np.ndarray
+    channels: np.ndarray
     white: int
     alpha: np.ndarray | None = None
     opaque: int = 255
+
+    def sums(self) -> tuple[np.ndarray, int]:
+        """Return the sum of the channels of each pixel, and that of white: their quotient is the mean from 0 to 1."""
+        if self.channels.ndim == 2:
+            return self.channels, self.white
+        return self.channels.sum(axis=2, dtype=np.uint16 if self.white == 255 else np.uint32), 3 * self.white
+
+    def grey(self) -> np.ndarray:
+        """Return the luminance of each pixel by Rec. 601, uint8, rounded as GraphicsMagick with 16 bits a value does."""
+        to_16_bits = _WHITE_16 // self.white
+        height, width = self.channels.shape[:2]
+        grey = np.empty((height, width), np.uint8)
+        n_rows = max(_BLOCK // width, 1)
+        for k in range(0, height, n_rows):
+            values = self.channels[k : k + n_rows].astype(np.uint32)
+            if values.ndim == 3:
+                values = (values @ _LUMINANCE * to_16_bits + 500) // 1000
+            else:
+                values *= to_16_bits
+            grey[k : k + n_rows] = values // 257
+        return grey
 
 
 def read_image(
@@ -51,7 +80,8 @@ def read_image(
     """Read a map from an image, one cell per pixel.
 
     The grey value of a pixel is the mean of its colour channels from 0 (black) to 1 (white). A pixel that is partly
-    transparent is laid over white; one that is wholly transparent shows nothing, and ``unknown`` says what it is.
+    transparent is laid over white; one that is wholly transparent, or that the tag of GDAL in a TIFF calls nodata, shows
+    nothing, and ``unknown`` says what it is.
 
     Parameters
     ----------
@@ -60,7 +90,8 @@ def read_image(
     threshold : float, default 0.5
         A pixel is occupied if its grey value is below this, and free from it on. From 0 to 1.
     unknown : {"free", "occupied"}, default "free"
-        What wholly transparent pixels are. ``"free"`` is what a drawing on a transparent background means.
+        What wholly transparent pixels and those without data are. ``"free"`` is what a drawing on a transparent background
+        means.
     corner_cutting : bool, default False
         Whether a diagonal step may touch an occupied cell.
     resolution : float, default 1.0
@@ -77,20 +108,36 @@ def read_image(
     ------
     MapError
         If the file cannot be read as an image, has too many pixels, or an option is out of its range.
+
+    Warns
+    -----
+    MapWarning
+        If the YAML file of a ROS map lies beside the image and names it.
     """
     check_unknown(path, unknown)
     if not _is_fraction(threshold):
         raise MapError(path, f"the option threshold is {shorten(threshold)}, expected a number from 0 to 1")
     pixels = read_pixels(path)
+    shade, white = pixels.sums()
     if pixels.alpha is None:
-        occupied = _grey_levels(pixels.white)[pixels.shade] < threshold
+        occupied = (_grey_levels(white) < threshold)[shade]
+        unseen = np.zeros_like(occupied)
     else:
         # Over white, in whole numbers so that a grey value equal to the threshold stays equal.
         alpha = pixels.alpha.astype(np.uint32)
-        over_white = pixels.shade * alpha + pixels.white * (pixels.opaque - alpha)
-        occupied = over_white / (pixels.white * pixels.opaque) < threshold
-        occupied[alpha == 0] = unknown == "occupied"
-    return make_grid(path, occupied[::-1], corner_cutting=corner_cutting, resolution=resolution, origin=origin)
+        over_white = shade * alpha + white * (pixels.opaque - alpha)
+        occupied = over_white / (white * pixels.opaque) < threshold
+        unseen = alpha == 0
+        occupied[unseen] = unknown == "occupied"
+    if (described := yaml_of_image(path)) is not None:
+        warn(
+            path,
+            f"{visible(described.name)} beside it describes this image as a ROS map and was not read; read that file for its "
+            "resolution, origin, thresholds and unknown cells",
+        )
+    return make_grid(
+        path, occupied[::-1], corner_cutting=corner_cutting, resolution=resolution, origin=origin, unknown=unseen[::-1]
+    )
 
 
 def read_pixels(path: str | os.PathLike[str]) -> Pixels:
@@ -130,20 +177,32 @@ def _decode(path, image: Image.Image) -> Pixels:
         return _decode_16_bit(path, image)
     if mode in ("LA", "La", "PA", "RGBA", "RGBa") or "transparency" in image.info:
         channels = np.asarray(image.convert("RGBA"))
-        return Pixels(channels[..., :3].sum(axis=2, dtype=np.uint16), 3 * 255, channels[..., 3])
+        return Pixels(channels[..., :3], 255, channels[..., 3])
+    alpha = _alpha_of_nodata(image)
     if mode in ("1", "L"):
-        return Pixels(np.asarray(image.convert("L")), 255)
-    return Pixels(np.asarray(image.convert("RGB")).sum(axis=2, dtype=np.uint16), 3 * 255)
+        return Pixels(np.asarray(image.convert("L")), 255, alpha)
+    return Pixels(np.asarray(image.convert("RGB")), 255, alpha)
 
 
 def _decode_16_bit(path, image: Image.Image) -> Pixels:
-    values, white = np.asarray(image), 2**16 - 1
+    values, white = np.asarray(image), _WHITE_16
     low, high = int(values.min()), int(values.max())
     if low < 0 or high > white:
         raise MapError(path, f"the pixels range from {low} to {high}, expected whole numbers of 8 or 16 bits")
     key = image.info.get("transparency")
-    alpha = np.where(values == key, 0, 255).astype(np.uint8) if isinstance(key, int) else None
+    alpha = np.where(values == key, 0, 255).astype(np.uint8) if isinstance(key, int) else _alpha_of_nodata(image)
     return Pixels(values.astype(np.uint16), white, alpha)
+
+
+def _alpha_of_nodata(image: Image.Image) -> np.ndarray | None:
+    """Return which pixels of a TIFF hold no data by GDAL's tag, as an alpha channel, or None if it has no such tag."""
+    try:
+        nodata = float(getattr(image, "tag_v2", {})[_GDAL_NODATA])
+    except (KeyError, TypeError, ValueError):
+        return None
+    values = np.asarray(image)
+    empty = values == nodata
+    return np.where(empty.all(axis=2) if empty.ndim == 3 else empty, 0, 255).astype(np.uint8)
 
 
 def _grey_levels(white: int) -> np.ndarray:

@@ -11,6 +11,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_string, shorten
@@ -111,6 +112,7 @@ def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -
         If the file cannot be read or is not such a scenario, or if an entry's size is not that of ``grid``; the message
         names the line.
     """
+    checks.instance("grid", grid, OccupancyGrid, optional=True)
     lines = read_string(path).rstrip().split("\n")
     if lines[0].split() not in (["version", "1"], ["version", "1.0"]):
         raise MapError(path, f"found {shorten(lines[0])}, expected 'version 1' or 'version 1.0'", 1)

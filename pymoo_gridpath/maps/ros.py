@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import yaml
 
-from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.errors import counted
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._files import check_unknown, make_grid, read_string, shorten
+from pymoo_gridpath.maps._files import check_unknown, make_grid, warn
+from pymoo_gridpath.maps._ros_yaml import Keys
 from pymoo_gridpath.maps.image import Pixels, read_pixels
 
 MODES = ("trinary", "scale", "raw")
 UNKNOWN = -1
+# What map savers write.
+SAVED_OCCUPIED, SAVED_UNKNOWN, SAVED_FREE = 0, 205, 254
 # An occupancy in percent, which only the modes scale and raw have, is an obstacle from here on.
 OCCUPIED_PERCENT = 50
 
@@ -25,17 +25,18 @@ OCCUPIED_PERCENT = 50
 def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cutting: bool = False) -> OccupancyGrid:
     """Read a map of the ROS map server.
 
-    Values are read as by Navigation2's ``nav2_map_server`` (ROS 2). The occupancy p of a pixel is 1 minus the mean of its
-    colour channels (0 for black to 1 for white), or that mean itself if ``negate`` is set. Then, by ``mode``:
+    Values are read as by the current ``nav2_map_server`` (Navigation2 for ROS 2). Colours become grey by their luminance,
+    values of more than 8 bits are cut to 8. The occupancy p of a pixel is 1 minus its grey (0 for black to 1 for white), or
+    the grey itself if ``negate`` is set, in single precision like the thresholds. Then, by ``mode``:
 
     trinary (the default)
-        Occupied if p >= ``occupied_thresh``, free if p <= ``free_thresh``, unknown between. A pixel that is not opaque is
+        Free if p <= ``free_thresh``, else occupied if p >= ``occupied_thresh``, else unknown. A pixel that is not opaque is
         unknown.
     scale
         As trinary, but between the thresholds p is scaled to an occupancy of 0 to 100 percent.
     raw
-        The pixel value, 0 to 100, is the occupancy in percent; larger ones are unknown. Thresholds, ``negate`` and
-        transparency play no part.
+        The grey, 0 to 255, is the occupancy in percent; above 100 it is unknown. Thresholds, ``negate`` and transparency play
+        no part.
 
     An occupancy in percent is an obstacle from 50 on.
 
@@ -52,28 +53,48 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
     Returns
     -------
     OccupancyGrid
-        With the file's resolution and origin; the top row of the image is the highest row of the grid.
+        With the file's resolution, origin and unknown cells; the top row of the image is the highest row of the grid.
 
     Raises
     ------
     MapError
         If a file cannot be read, a key is missing or its value is not what it must be.
 
+    Warns
+    -----
+    MapWarning
+        If the map is one as map savers write them, with 205 for unknown, and its ``free_thresh`` makes these cells free.
+
     Notes
     -----
-    ROS 1 and earlier releases of Navigation2 differ: they compare strictly (p > ``occupied_thresh``, p < ``free_thresh``), so
-    a value that equals a threshold is unknown there, and in trinary mode they average the alpha channel with the colours.
-    ROS 1 furthermore applies ``negate`` in raw mode and keeps raw values above 100. Recent Navigation2 weighs the colours of a
-    coloured image by their brightness instead of taking their mean.
+    The YAML file is read by the rules of yaml-cpp 0.7: of several documents the first; quoted numbers like others; ``010`` is
+    ten; ``negate`` is a whole number, true unless 0, or one of y, yes, true, on, n, no, false, off, in small letters,
+    capitals or Capitalised. The case of ``mode`` does not matter. Stricter than there, a key that stands twice is refused, and
+    so are thresholds outside 0 to 1, a resolution that is not positive and files of more than 64 KiB. Pixels that the tag of
+    GDAL in a TIFF calls nodata are treated as transparent.
+
+    Older map servers (ROS 1, Navigation2 up to Iron) differ: they compare strictly (p > ``occupied_thresh``,
+    p < ``free_thresh``), occupied first, in double precision and without cutting to 8 bits, so that a value that equals a
+    threshold is unknown there. They take the mean of the colours, and in trinary mode average the alpha channel with them.
+    ROS 1 furthermore applies ``negate`` in raw mode and keeps raw values above 100.
     """
     check_unknown(path, unknown)
     settings = _read_settings(path)
-    percent = _occupancy(read_pixels(settings.image), settings)
+    pixels = read_pixels(settings.image)
+    grey = pixels.grey()
+    percent = _occupancy(pixels, grey, settings)
+    unseen = percent == UNKNOWN
     occupied = percent >= OCCUPIED_PERCENT
     if unknown == "occupied":
-        occupied |= percent == UNKNOWN
+        occupied |= unseen
+    _warn_if_unknown_is_free(path, grey, settings)
     return make_grid(
-        path, occupied[::-1], resolution=settings.resolution, origin=settings.origin, corner_cutting=corner_cutting
+        path,
+        occupied[::-1],
+        resolution=settings.resolution,
+        origin=settings.origin,
+        corner_cutting=corner_cutting,
+        unknown=unseen[::-1],
     )
 
 
@@ -88,97 +109,62 @@ class _Settings:
     mode: str
 
 
-def _occupancy(pixels: Pixels, settings: _Settings) -> np.ndarray:
+def _occupancy(pixels: Pixels, grey: np.ndarray, settings: _Settings) -> np.ndarray:
     """Return the occupancy of every pixel as the map server publishes it: 0 to 100, or -1 where unknown."""
-    shade = np.arange(pixels.white + 1)
-    if settings.mode == "raw":
-        value = np.floor(255 * shade / pixels.white + 0.5)
-        return np.where(value <= 100, value, UNKNOWN).astype(np.int8)[pixels.shade]
-    p = (shade if settings.negate else pixels.white - shade) / pixels.white
-    if settings.mode == "scale":
-        ratio = (p - settings.free_thresh) / (settings.occupied_thresh - settings.free_thresh)
-        between = np.floor(100 * ratio + 0.5)
-    else:
-        between = np.full(p.shape, UNKNOWN)
-    levels = np.select([p >= settings.occupied_thresh, p <= settings.free_thresh], [100, 0], between).astype(np.int8)
-    percent = levels[pixels.shade]
-    if pixels.alpha is not None:
+    percent = _levels(settings)[grey]
+    if pixels.alpha is not None and settings.mode != "raw":
         percent[pixels.alpha < pixels.opaque] = UNKNOWN
     return percent
 
 
+def _levels(settings: _Settings) -> np.ndarray:
+    """Return the occupancy of each grey level from 0 to 255, computed in single precision as the map server does."""
+    grey = np.arange(256)
+    if settings.mode == "raw":
+        return np.where(grey <= 100, grey, UNKNOWN).astype(np.int8)
+    shade = grey.astype(np.float32) / np.float32(255)
+    p = shade if settings.negate else np.float32(1) - shade
+    free, occupied = np.float32(settings.free_thresh), np.float32(settings.occupied_thresh)
+    if settings.mode == "scale" and settings.free_thresh < settings.occupied_thresh:
+        scaled = (p - free) / np.float32(settings.occupied_thresh - settings.free_thresh) * np.float32(100)
+        between = np.trunc(scaled) + (scaled - np.trunc(scaled) >= 0.5)
+    else:
+        between = np.full(p.shape, UNKNOWN)
+    # Free goes before occupied, which matters where the thresholds are equal or crossed.
+    return np.select([p <= free, p >= occupied], [0, 100], between).astype(np.int8)
+
+
+def _warn_if_unknown_is_free(path, grey: np.ndarray, settings: _Settings) -> None:
+    """Warn of a map as savers write it, whose threshold makes free what was never seen."""
+    if settings.mode != "trinary" or _levels(settings)[SAVED_UNKNOWN] != 0:
+        return
+    n, *known = (int(np.count_nonzero(grey == value)) for value in (SAVED_UNKNOWN, SAVED_OCCUPIED, SAVED_FREE))
+    if n and n + sum(known) == grey.size:
+        warn(
+            path,
+            f"{counted(n, 'cell')} of grey {SAVED_UNKNOWN}, which map savers write for unknown, "
+            f"{'counts' if n == 1 else 'count'} as free, because free_thresh is {settings.free_thresh:g}; "
+            "with 0.196 they would be unknown",
+        )
+
+
 def _read_settings(path) -> _Settings:
-    keys = _Keys(path)
-    name = keys.get("image", str, "the name of an image file")
-    image = Path(path).parent / name
+    keys = Keys(path)
+    image = Path(path).parent / keys.text("image", "the name of an image file")
     if not os.path.isfile(image):
         raise keys.error("image", "an existing image file, absolute or relative to this file")
-    resolution = keys.number("resolution", "a positive number of metres per cell")
+    metres = "a positive number of metres per cell"
+    resolution = keys.number("resolution", metres)
     if resolution <= 0:
-        raise keys.error("resolution", "a positive number of metres per cell")
-    origin = keys.get("origin", list, "a list [x, y, yaw] of metres and radians")
-    pose = tuple(_as_number(value) for value in origin)
-    if len(pose) != 3 or not all(map(math.isfinite, pose)):
-        raise keys.error("origin", "a list [x, y, yaw] of metres and radians")
-    if keys.value("negate") not in (0, 1):
-        raise keys.error("negate", "0 or 1")
+        raise keys.error("resolution", metres)
+    origin = keys.numbers("origin", 3, "a list [x, y, yaw] of metres and radians")
+    negate = keys.flag("negate", "0 or 1, or a word such as false or true")
     free, occupied = (keys.number(key, "a number from 0 to 1") for key in ("free_thresh", "occupied_thresh"))
     for key, value in (("free_thresh", free), ("occupied_thresh", occupied)):
         if not 0 <= value <= 1:
             raise keys.error(key, "a number from 0 to 1")
-    if free >= occupied:
-        raise keys.error("free_thresh", f"a number below occupied_thresh, which is {occupied:g}")
-    mode = keys.values.get("mode", "trinary")
+    one_of = f"one of {', '.join(MODES)}"
+    mode = keys.text("mode", one_of).lower() if "mode" in keys else "trinary"
     if mode not in MODES:
-        raise keys.error("mode", f"one of {', '.join(MODES)}")
-    return _Settings(image, resolution, pose, bool(keys.value("negate")), occupied, free, mode)
-
-
-class _Keys:
-    """The keys of the YAML file with their values and lines."""
-
-    def __init__(self, path):
-        self.path = path
-        text = read_string(path)
-        try:
-            node = yaml.compose(text, Loader=yaml.SafeLoader)
-            self.values: dict[str, Any] = yaml.safe_load(text)
-        except yaml.MarkedYAMLError as error:
-            line = None if error.problem_mark is None else error.problem_mark.line + 1
-            raise MapError(path, f"the YAML is broken ({error.problem}), expected lines of 'key: value'", line) from None
-        except Exception:
-            # PyYAML lets errors of other kinds escape, for instance from a date that does not exist or from deep nesting.
-            raise MapError(path, "the YAML cannot be read, expected lines of 'key: value'") from None
-        if not isinstance(node, yaml.MappingNode) or not isinstance(self.values, dict):
-            raise MapError(path, f"the YAML holds {shorten(self.values)}, expected a mapping with the key 'image' and others")
-        self.lines = {key.value: key.start_mark.line + 1 for key, _ in node.value if isinstance(key, yaml.ScalarNode)}
-
-    def value(self, key: str) -> Any:
-        if key not in self.values:
-            raise MapError(self.path, f"the key {key!r} is missing, expected it in the YAML file of a ROS map")
-        return self.values[key]
-
-    def get(self, key: str, kind: type, expected: str) -> Any:
-        if not isinstance(self.value(key), kind):
-            raise self.error(key, expected)
-        return self.values[key]
-
-    def number(self, key: str, expected: str) -> float:
-        number = _as_number(self.value(key))
-        if not math.isfinite(number):
-            raise self.error(key, expected)
-        return number
-
-    def error(self, key: str, expected: str) -> MapError:
-        return MapError(self.path, f"{key} is {shorten(self.values[key])}, expected {expected}", self.lines.get(key))
-
-
-def _as_number(value: Any) -> float:
-    """Return a number, or nan for anything else."""
-    # PyYAML reads 5e-2 as text, the map server as a number.
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        return math.nan
-    try:
-        return float(value)
-    except (ValueError, OverflowError):
-        return math.nan
+        raise keys.error("mode", one_of)
+    return _Settings(image, resolution, origin, negate, occupied, free, mode)

@@ -6,6 +6,7 @@ import difflib
 from dataclasses import dataclass
 from pathlib import Path
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps.text import read_text, read_text_header
@@ -79,6 +80,7 @@ def load_shipped(name: str, **options) -> OccupancyGrid:
     (16, 16)
     """
     names = shipped_names()
+    checks.text("name", name)
     if name not in names:
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         hint = f" (did you mean {near[0]!r}?)" if near else ""

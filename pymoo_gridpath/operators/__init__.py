@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.crossover import (
     DiscreteSBX,
@@ -55,7 +56,10 @@ __all__ = [
 def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 20.0) -> dict:
     """Return the operators that the paper names for the problem's representation.
 
-    They fit any pymoo algorithm that takes operators: ``NSGA2(pop_size=100, **paper_operators(problem))``.
+    pymoo's own constructors take them as they are where the capability table says "Unpacks":
+    ``NSGA2(pop_size=100, **paper_operators(problem))``. Others, such as MOEA/D, refuse one of them or heed it not;
+    ``make_algorithm("MOEA/D", problem, operators=paper_operators(problem))`` fits them to every algorithm that takes a
+    crossover and a mutation.
 
     Parameters
     ----------
@@ -106,7 +110,10 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
 def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalarized") -> dict:
     """Return operators that know paths: whatever they make is a legal path, in any representation.
 
-    They fit any pymoo algorithm that takes operators: ``NSGA2(pop_size=100, **path_operators(problem))``.
+    pymoo's own constructors take them as they are where the capability table says "Unpacks":
+    ``NSGA2(pop_size=100, **path_operators(problem))``. Others, such as MOEA/D, refuse one of them or heed it not;
+    ``make_algorithm("MOEA/D", problem, operators=path_operators(problem))`` fits them to every algorithm that takes a
+    crossover and a mutation.
 
     Parameters
     ----------
@@ -125,8 +132,7 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
     GridPathError
         If the sampling is unknown, or the problem has no path representation.
     """
-    if sampling not in ("scalarized", "random"):
-        raise GridPathError(f"sampling is {sampling!r}, expected 'scalarized' or 'random'")
+    checks.one_of("sampling", sampling, ("scalarized", "random"))
     terrain_of(problem)
     return {
         "sampling": ScalarizedSampling() if sampling == "scalarized" else ReachableSampling(),
@@ -139,6 +145,8 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
 
 def default_operators(problem) -> dict:
     """Return `paper_operators` for the paper's representations, and `path_operators` for any other, such as "cells".
+
+    See either for which of pymoo's algorithms take them as they are.
 
     Parameters
     ----------

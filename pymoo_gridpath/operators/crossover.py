@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from pymoo.core.crossover import Crossover
 from pymoo.core.variable import Real
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.operators.parameters import in_range, number, one_or_two
+from pymoo_gridpath.operators.parameters import (
+    bounds_of,
+    check_whole_rows,
+    generator,
+    in_range,
+    number,
+    one_or_two,
+    pairs,
+    whole,
+)
+from pymoo_gridpath.representations.base import representation_of
 
 
 class DiscreteSBX(Crossover):
@@ -16,6 +28,11 @@ class DiscreteSBX(Crossover):
     Each gene in which the parents differ takes part with probability ``prob_var``. Its two children are drawn from the
     distribution of bounded simulated binary crossover, whose probability over each unit cell falls to the whole number
     in it, and they change places with probability one half, as in pymoo.
+
+    Needs whole-number genes: a sampling that draws them, such as `RandomSampling`, and bounds ``xl`` and ``xu``; pymoo's
+    ``SBX`` is for real variables. Children keep to the bounds, but a gene of the paper's codings is a step from the cell
+    before, so that a child may leave the grid: on a path problem give the algorithm `EdgeFixing` as ``repair``, as
+    `paper_operators` does.
 
     Parameters
     ----------
@@ -27,6 +44,11 @@ class DiscreteSBX(Crossover):
         Probability of a mating to cross at all.
     n_offsprings : {1, 2}, default 2
         Children kept of each mating; algorithms that use one, such as C-TAEA, need 1.
+
+    Raises
+    ------
+    GridPathError
+        If a parameter is out of its range, or, when it crosses, rows are not whole numbers or the problem has no bounds.
 
     References
     ----------
@@ -43,6 +65,7 @@ class DiscreteSBX(Crossover):
         self.prob_var = Real(prob_var, bounds=(0.1, 0.9), strict=(0.0, 1.0))
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
+        check_whole_rows("DiscreteSBX", X, problem, "pymoo's SBX")
         return _keep(self.cross(X, problem.xl, problem.xu, random_state), self.n_offsprings, random_state)
 
     def cross(self, X: np.ndarray, xl: np.ndarray, xu: np.ndarray, random_state) -> np.ndarray:
@@ -58,6 +81,8 @@ class DiscreteSBX(Crossover):
         -------
         numpy.ndarray of int, shape (2, n_matings, n_var)
         """
+        X, random_state = pairs(X), generator(random_state)
+        xl, xu = bounds_of(X.shape[2], xl, xu)
         taking_part = (random_state.random(X.shape[1:]) < number(self.prob_var)) & (X[0] != X[1])
         mating, gene = np.nonzero(taking_part)
         a, b = X[0, mating, gene], X[1, mating, gene]
@@ -87,7 +112,9 @@ def _spread(bound: np.ndarray, draw: np.ndarray, exponent: float) -> np.ndarray:
 class PointCrossover(Crossover):
     """Exchange the genes between cut points; the cuts of each mating are distinct and uniformly random.
 
-    Draws the same distribution as pymoo's operator of that name, without its loop over matings.
+    Draws the same distribution as pymoo's operator of that name, without its loop over matings. Genes change places and keep
+    their values, so that it suits whole numbers, bits and real variables alike. On a path problem a child may leave the grid or
+    cross obstacles: give the algorithm a repair beside it, `EdgeFixing` for the paper's codings and `PathRepair` for any.
 
     Parameters
     ----------
@@ -101,18 +128,17 @@ class PointCrossover(Crossover):
 
     def __init__(self, n_points: int, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
         super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
-        if n_points < 1:
-            raise GridPathError(f"n_points is {n_points}, expected one or more cuts")
-        self.n_points = n_points
+        self.n_points = whole("n_points", n_points, 1, 10**9)
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
         return _keep(self.cross(X, random_state), self.n_offsprings, random_state)
 
     def cross(self, X: np.ndarray, random_state) -> np.ndarray:
         """Return two children of each pair of parents, shape (2, n_matings, n_var)."""
+        X, random_state = pairs(X, "biuf"), generator(random_state)
         _, n_matings, n_var = X.shape
         n_points = min(self.n_points, n_var - 1)
-        if n_points == 0:
+        if n_points < 1:
             return X.copy()
         places = random_state.random((n_matings, n_var - 1))
         cut = np.zeros((n_matings, n_var), dtype=np.int8)
@@ -123,14 +149,20 @@ class PointCrossover(Crossover):
 
 
 class TwoPointCrossover(PointCrossover):
-    """Two-point crossover, the paper's for the binary coding (section 2.1)."""
+    """Two-point crossover, the paper's for the binary coding (section 2.1).
+
+    See `PointCrossover` for what it needs beside it.
+    """
 
     def __init__(self, prob: float = 0.9, **kwargs):
         super().__init__(2, prob=prob, **kwargs)
 
 
 class SinglePointCrossover(PointCrossover):
-    """Single-point crossover, the paper's for the bits of the mixed coding (section 2.2)."""
+    """Single-point crossover, the paper's for the bits of the mixed coding (section 2.2).
+
+    See `PointCrossover` for what it needs beside it.
+    """
 
     def __init__(self, prob: float = 0.9, **kwargs):
         super().__init__(1, prob=prob, **kwargs)
@@ -138,6 +170,8 @@ class SinglePointCrossover(PointCrossover):
 
 class MixedCrossover(Crossover):
     """Single-point crossover on the bits and discrete SBX on the integers of the mixed coding.
+
+    Needs a problem of the mixed coding, and `EdgeFixing` as repair beside it.
 
     Parameters
     ----------
@@ -160,6 +194,7 @@ class MixedCrossover(Crossover):
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
         n = bits_of(problem)
+        check_whole_rows("MixedCrossover", X, problem, "pymoo's SBX")
         bits = self.bits.cross(X[:, :, :n], random_state)
         integers = self.integers.cross(X[:, :, n:], problem.xl[n:], problem.xu[n:], random_state)
         return _keep(np.concatenate([bits, integers], axis=2), self.n_offsprings, random_state)
@@ -167,9 +202,10 @@ class MixedCrossover(Crossover):
 
 def bits_of(problem) -> int:
     """Return the number of bits at the head of a row of the mixed coding."""
-    if problem.representation.name != "mixed":
-        raise GridPathError(f"the mixed operators need the mixed representation, the problem has {problem.representation.name}")
-    return problem.representation.n_bits
+    representation: Any = representation_of(problem)
+    if representation.name != "mixed":
+        raise GridPathError(f"the mixed operators need the mixed representation, the problem has {representation.name}")
+    return representation.n_bits
 
 
 def _keep(children: np.ndarray, n_offsprings: int, random_state) -> np.ndarray:

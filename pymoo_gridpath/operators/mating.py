@@ -122,8 +122,12 @@ class FirstChildMating(ArrayMating):
 
 
 def knows_arrays(operator) -> bool:
-    """Return whether an operator does all it does in ``_do``, as this package's own; others may need pymoo's mating."""
-    return type(operator).__module__.startswith("pymoo_gridpath.")
+    """Return whether an operator does all it does in ``_do``, as this package's own; others may need pymoo's mating.
+
+    So does one that was given a repair or type of genes of its own, which pymoo heeds outside of ``_do``.
+    """
+    more = getattr(operator, "repair", None), getattr(operator, "vtype", None)
+    return type(operator).__module__.startswith("pymoo_gridpath.") and more == (None, None)
 
 
 def _unseen(X: np.ndarray, seen: set[bytes]) -> np.ndarray:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from pymoo.core.algorithm import Algorithm
 from pymoo.core.mutation import Mutation
 from pymoo.core.variable import Real
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.crossover import bits_of
-from pymoo_gridpath.operators.parameters import in_range, number
+from pymoo_gridpath.operators.parameters import bounds_of, check_whole_rows, generator, in_range, number, rate_of, rows
 
 
 class DiscretePolynomialMutation(Mutation):
@@ -18,6 +21,9 @@ class DiscretePolynomialMutation(Mutation):
     / range)**eta has over the unit cell around z, cut off at the bound. Rounding the continuous operator instead would
     leave most genes as they were.
 
+    Needs whole-number genes: a sampling that draws them, such as `RandomSampling`, and bounds ``xl`` and ``xu``; pymoo's ``PM``
+    is for real variables. On a path problem a mutated path may leave the grid: give the algorithm `EdgeFixing` as ``repair``.
+
     Parameters
     ----------
     eta : float, default 20
@@ -26,6 +32,11 @@ class DiscretePolynomialMutation(Mutation):
         Probability of each gene to change; 1 / n_var by default, the paper's rate.
     prob : float, default 1.0
         Probability of an individual to be mutated at all.
+
+    Raises
+    ------
+    GridPathError
+        If a parameter is out of its range, or, when it mutates, rows are not whole numbers or the problem has no bounds.
 
     References
     ----------
@@ -41,6 +52,7 @@ class DiscretePolynomialMutation(Mutation):
         self.eta = Real(eta, bounds=(3.0, 30.0), strict=(0.0, 1000.0))
 
     def _do(self, problem, X, *args, random_state=None, **kwargs):
+        check_whole_rows("DiscretePolynomialMutation", X, problem, "pymoo's PM")
         return self.mutate(X, problem.xl, problem.xu, number(self.get_prob_var(problem)), random_state)
 
     def mutate(self, X: np.ndarray, xl: np.ndarray, xu: np.ndarray, rate: float, random_state) -> np.ndarray:
@@ -58,6 +70,8 @@ class DiscretePolynomialMutation(Mutation):
         -------
         numpy.ndarray of int, shape (N, n_var)
         """
+        X, random_state, rate = rows(X), generator(random_state), rate_of(rate)
+        xl, xu = bounds_of(X.shape[1], xl, xu)
         row, gene = np.nonzero((random_state.random(X.shape) < rate) & (xl < xu))
         value = X[row, gene]
         down, up = value - xl[gene], xu[gene] - value
@@ -76,6 +90,10 @@ class DiscretePolynomialMutation(Mutation):
 
 class BitwiseMutation(Mutation):
     """Flip each bit with a rate that falls linearly over the run.
+
+    Needs genes that are bits, of the type bool or whole numbers from 0 to 1; `DiscretePolynomialMutation` is for other whole
+    numbers, pymoo's ``PM`` for real variables. On a path problem a mutated path may leave the grid: give the algorithm
+    `EdgeFixing` as ``repair``.
 
     Parameters
     ----------
@@ -104,20 +122,30 @@ class BitwiseMutation(Mutation):
         self.final = in_range("final", final, 0, 1)
 
     def _do(self, problem, X, *args, random_state=None, algorithm=None, **kwargs):
+        check_whole_rows("BitwiseMutation", X, problem, "pymoo's PM")
+        if np.max(problem.xu) > 1 or np.min(problem.xl) < 0:
+            raise GridPathError(
+                f"BitwiseMutation flips bits and genes go from {np.min(problem.xl):g} to {np.max(problem.xu):g}, expected "
+                f"bounds of 0 and 1; DiscretePolynomialMutation is for whole numbers"
+            )
         return self.flip(X, number(self.get_prob_var(problem)) * self.decay(algorithm), random_state)
 
     def decay(self, algorithm) -> float:
         """Return the share of the initial rate that is left."""
+        checks.instance("algorithm", algorithm, Algorithm, " of pymoo", optional=True)
         done = 0.0 if algorithm is None or algorithm.termination is None else algorithm.termination.perc
         return 1.0 - (1.0 - self.final) * float(np.clip(done, 0.0, 1.0))
 
     def flip(self, X: np.ndarray, rate: float, random_state) -> np.ndarray:
         """Return a copy of bits (bool, or integers 0 and 1) with each flipped with probability ``rate``."""
+        X, random_state, rate = rows(X), generator(random_state), rate_of(rate)
         return X ^ (random_state.random(X.shape) < rate).astype(X.dtype)
 
 
 class MixedMutation(Mutation):
     """Bitwise mutation on the bits and discrete polynomial mutation on the integers of the mixed coding.
+
+    Needs a problem of the mixed coding, and `EdgeFixing` as repair beside it.
 
     Parameters
     ----------
@@ -144,6 +172,7 @@ class MixedMutation(Mutation):
 
     def _do(self, problem, X, *args, random_state=None, algorithm=None, **kwargs):
         n = bits_of(problem)
+        check_whole_rows("MixedMutation", X, problem, "pymoo's PM")
         rate = 1.0 / n if self.prob_var is None else number(self.prob_var)
         bits = self.bits.flip(X[:, :n], rate * self.bits.decay(algorithm), random_state)
         integers = self.integers.mutate(X[:, n:], problem.xl[n:], problem.xu[n:], rate, random_state)

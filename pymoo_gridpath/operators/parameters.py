@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import numpy as np
 from pymoo.core.variable import Variable
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 
 
@@ -25,14 +28,8 @@ def in_range(name: str, value: Any, low: float, high: float, optional: bool = Fa
     """
     if value is None and optional:
         return None
-    try:
-        if isinstance(value, str | bytes):
-            raise TypeError
-        found = number(value)
-    except (TypeError, ValueError):
-        raise GridPathError(f"{name} is {value!r}, expected a number from {low:g} to {high:g}") from None
-    if not low <= found <= high:
-        raise GridPathError(f"{name} is {found:g}, expected a number from {low:g} to {high:g}")
+    given = value.get() if isinstance(value, Variable) else value
+    checks.number(name, given, low, high, expected=f"a number from {low:g} to {high:g}", infinite=high == math.inf)
     return value
 
 
@@ -44,9 +41,11 @@ def whole(name: str, value: Any, low: int, high: int) -> int:
     GridPathError
         If it is not.
     """
-    if in_range(name, value, low, high) != int(value):
-        raise GridPathError(f"{name} is {value:g}, expected a whole number")
-    return int(value)
+    given: Any = value.get() if isinstance(value, Variable) else value
+    expected = f"a whole number from {low:,} to {high:,}"
+    if checks.number(name, given, low, high, expected=expected) % 1:
+        raise GridPathError(f"{name} is {checks.shown(given)}, expected {expected}")
+    return int(given)
 
 
 def one_or_two(n_offsprings: int) -> int:
@@ -57,6 +56,59 @@ def one_or_two(n_offsprings: int) -> int:
     GridPathError
         If it is not.
     """
-    if isinstance(n_offsprings, float) or n_offsprings not in (1, 2):
-        raise GridPathError(f"n_offsprings is {n_offsprings!r}, expected 1 or 2")
-    return int(n_offsprings)
+    return checks.whole("n_offsprings", n_offsprings, 1, 2, expected="1 or 2")
+
+
+def check_whole_rows(operator: str, X: np.ndarray, problem, instead: str) -> None:
+    """Refuse rows that are not of whole numbers or bits, and problems that do not bound them.
+
+    Parameters
+    ----------
+    operator : str
+        Who refuses.
+    X : numpy.ndarray
+        Rows of genes, of any shape.
+    problem : pymoo.core.problem.Problem
+    instead : str
+        What real variables want in its place.
+
+    Raises
+    ------
+    GridPathError
+        Their type decides: real numbers are refused even where they happen to be whole.
+    """
+    if X.dtype.kind not in "iub":
+        raise GridPathError(
+            f"{operator} is for whole numbers and the rows are of the type {X.dtype}; expected a sampling that draws whole "
+            f"numbers, such as RandomSampling, or for real variables {instead}"
+        )
+    if problem.xl is None or problem.xu is None:
+        raise GridPathError(f"{operator} draws within bounds and the problem has none, expected xl and xu")
+
+
+def pairs(X: np.ndarray, kinds: str = "biu") -> np.ndarray:
+    """Return rows of parents if they are such, shape (2, n_matings, n_var)."""
+    what = "whole numbers" if "f" not in kinds else "numbers"
+    return checks.array("X", X, (2, None, None), kinds, expected=f"{what} of shape (2, n_matings, n_var)")
+
+
+def rows(X: np.ndarray) -> np.ndarray:
+    """Return rows of whole numbers or bits if they are such, shape (N, n_var)."""
+    return checks.array("X", X, (None, None), "biu", expected="whole numbers of shape (N, n_var)")
+
+
+def bounds_of(n_var: int, xl: np.ndarray, xu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bounds of so many genes if they are such."""
+    expected = f"{n_var} bounds, finite numbers"
+    xl, xu = (checks.array(k, v, (n_var,), expected=expected, finite=True) for k, v in (("xl", xl), ("xu", xu)))
+    return xl, xu
+
+
+def generator(random_state: np.random.Generator) -> np.random.Generator:
+    """Return a generator of random numbers if it is one."""
+    return checks.instance("random_state", random_state, np.random.Generator, " such as numpy.random.default_rng(1)")
+
+
+def rate_of(rate: float) -> float:
+    """Return a probability if it is one."""
+    return checks.number("rate", rate, 0.0, 1.0, expected="a probability from 0 to 1")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pymoo.core.repair import Repair
 
 from pymoo_gridpath.operators.terrain import terrain_of
-from pymoo_gridpath.representations.base import max_cells
+from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search.sequences import are_legal, mend
 
 
@@ -18,7 +18,8 @@ class PathRepair(Repair):
     """
 
     def _do(self, problem, X, random_state=None, **kwargs):
-        representation, terrain = problem.representation, terrain_of(problem)
+        assert random_state is not None
+        representation, terrain = representation_of(problem), terrain_of(problem)
         X = representation.repair(X, random_state)
         broken = ~are_legal(representation.to_sequences(X), terrain)
         if broken.any():

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pymoo.core.repair import Repair
 
+from pymoo_gridpath.representations.base import representation_of
+
 
 class EdgeFixing(Repair):
     """Bring moves that leave the grid back by the paper's random rule, and round genes that are not whole.
@@ -19,4 +21,5 @@ class EdgeFixing(Repair):
     """
 
     def _do(self, problem, X, random_state=None, **kwargs):
-        return problem.representation.repair(X, random_state)
+        assert random_state is not None
+        return representation_of(problem).repair(X, random_state)

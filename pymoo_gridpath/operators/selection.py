@@ -14,15 +14,16 @@ class SmoothnessTournament(TournamentSelection):
     turn; of equal turns the one with the larger crowding distance; and else either. If one of them is infeasible, the
     one with the smaller constraint violation wins first (Deb's parameter-less rule).
 
-    Needs `RankAndSmoothness` as survival, which sets ``rank`` and ``crowding``, and a problem that sets ``turn``.
+    Needs `RankAndSmoothness` as survival beside it, which sets ``rank`` and ``crowding``, and a problem that sets ``turn``,
+    without which that survival warns and turns count as equal. The type of the genes does not matter.
 
     References
     ----------
     Ahmed and Deb (2013), sections 4.1 and 5.1.
     """
 
-    def __init__(self, **kwargs):
-        super().__init__(func_comp=by_rank_turn_crowding, **kwargs)
+    def __init__(self):
+        super().__init__(func_comp=by_rank_turn_crowding)
 
 
 class CrowdingTournament(TournamentSelection):
@@ -38,8 +39,8 @@ class CrowdingTournament(TournamentSelection):
     Transactions on Evolutionary Computation 6(2), 2002.
     """
 
-    def __init__(self, **kwargs):
-        super().__init__(func_comp=by_dominance_and_crowding, **kwargs)
+    def __init__(self):
+        super().__init__(func_comp=by_dominance_and_crowding)
 
 
 class NeighborTournament(NeighborBasedTournamentSelection):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from pymoo.operators.survival.rank_and_crowding.metrics import FunctionalDiversi
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 from pymoo.util.randomized_argsort import randomized_argsort
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.operators.individuals import ArrayPopulation
 
 
@@ -22,12 +24,42 @@ class ArraySurvival(Survival):
         return survivors if isinstance(survivors, list) else survivors.view(ArrayPopulation)
 
 
+def turns_of(pop, owner: str) -> np.ndarray:
+    """Return the total turns of individuals; where the problem gave none, warn and return noughts, so that all are equal.
+
+    Parameters
+    ----------
+    pop : pymoo.core.population.Population
+    owner : str
+        Who breaks ties by them.
+
+    Returns
+    -------
+    numpy.ndarray of float, shape (N,)
+    """
+    turn = pop.get("turn")
+    if turn.dtype == object:
+        # Python's filter shows it once in a run.
+        warnings.warn(
+            f"{owner} breaks ties by total turn and the problem gives none, so that it breaks none; expected one that sets "
+            f"'turn' in each evaluation, such as GridPathProblem",
+            stacklevel=1,
+        )
+        return np.zeros(len(turn))
+    return turn.astype(float)
+
+
 class RankAndSmoothness(ArraySurvival):
     """The modified NSGA-II's survival: whole fronts first, and of the last one the smoothest paths.
 
     Within the front that does not fit as a whole, individuals with a smaller total turn survive; of equal turns those
     with the larger crowding distance, which is that of the whole front. Sets ``rank`` and ``crowding``. Infeasible
     individuals come after all feasible ones, in order of their constraint violation.
+
+    Needs `SmoothnessTournament` as ``selection`` beside it, for pymoo's own tournament compares dominance and crowding, so that
+    turn would never reach mating: ``NSGA2(selection=SmoothnessTournament(), survival=RankAndSmoothness(), ...)``. And a problem
+    that sets ``turn``, such as `GridPathProblem`; without it, it warns, and crowding decides alone. The type of the genes
+    does not matter.
 
     Parameters
     ----------
@@ -45,10 +77,10 @@ class RankAndSmoothness(ArraySurvival):
     def __init__(self, distinct: bool = False):
         super().__init__(filter_infeasible=True)
         self.nds = NonDominatedSorting()
-        self.distinct = distinct
+        self.distinct = checks.flag("distinct", distinct)
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
-        F, turn = pop.get("F").astype(float), pop.get("turn").astype(float)
+        F, turn = pop.get("F").astype(float), turns_of(pop, type(self).__name__)
         n_survive = len(pop) if n_survive is None else n_survive
         rank = np.full(len(pop), len(pop))
         for k, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_survive)):

@@ -6,7 +6,7 @@ import weakref
 
 import numpy as np
 
-from pymoo_gridpath.objectives import Length
+from pymoo_gridpath.objectives import Length, field_of
 from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search.sequences import Sequences, are_legal, mend
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
@@ -26,9 +26,9 @@ def terrain_of(problem) -> Terrain:
     GridPathError
         If the problem has no path representation.
     """
+    representation = representation_of(problem)
     if problem not in _TERRAINS:
-        representation = representation_of(problem)
-        fields = [objective.field_in(problem.grid, representation.box) for objective in problem.objectives]
+        fields = [field_of(objective, problem.grid, representation.box) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)
         _TERRAINS[problem] = make_terrain(moves, start, goal, [field for field in fields if field is not None])

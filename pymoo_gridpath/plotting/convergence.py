@@ -7,8 +7,10 @@ from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import is_color_like
 from matplotlib.ticker import AutoLocator, MaxNLocator, NullLocator
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.convergence import ConvergenceRecorder, common_reference_point
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.plotting import style
@@ -54,8 +56,12 @@ def plot_convergence(
     GridPathError
         If nothing was recorded or the quantity is unknown.
     """
-    if quantity not in _LABELS:
-        raise GridPathError(f"quantity is {quantity!r}, expected one of {', '.join(_LABELS)}")
+    checks.one_of("quantity", quantity, _LABELS)
+    if not is_color_like(color):
+        raise GridPathError(f"color is {checks.shown(color)}, expected a colour of matplotlib such as '#0072B2'")
+    if label is not None:
+        checks.text("label", label)
+    style.check_axes(ax)
     recorders = as_recorders(history)
     evaluations, values = _common(recorders, _series(recorders, quantity, reference_point))
     middle = np.median(values, axis=0)
@@ -83,7 +89,8 @@ def plot_convergence(
 
 def as_recorders(history) -> list[ConvergenceRecorder]:
     """Return the recorders of one run or of several; see `plot_convergence`."""
-    items = [history] if isinstance(history, ConvergenceRecorder) or hasattr(history, "algorithm") else list(history)
+    single = isinstance(history, ConvergenceRecorder) or hasattr(history, "algorithm")
+    items = [history] if single else checks.items("history", history, "a run with a ConvergenceRecorder, or several")
     recorders = []
     for item in items:
         if not isinstance(item, ConvergenceRecorder):

@@ -8,7 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.decision import NAMES
+from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.labels import place_labels
@@ -53,9 +55,11 @@ def plot_front(
     ----------
     Ahmed and Deb (2013), figures 4 and 8.
     """
-    columns = _columns(trade_off, objectives)
+    columns = _columns(check_set(trade_off), objectives)
     groups = style.by_path(trade_off, which)
-    other = _reference(trade_off, reference)
+    other = as_reference(trade_off, reference)
+    reference_label = checks.text("reference_label", reference_label)
+    style.check_axes(ax)
     solid = len(columns) == 3
     if ax is not None and (ax.name == "3d") != solid:
         raise GridPathError(f"the Axes are {ax.name}, expected {'3d' if solid else 'plane'} ones for {len(columns)} objectives")
@@ -71,20 +75,27 @@ def plot_front(
 
 def _columns(trade_off, objectives: Sequence[str] | None) -> list[int]:
     names = trade_off.objective_names
-    chosen = names if objectives is None else list(objectives)
+    chosen = names if objectives is None else checks.names("objectives", objectives)
     unknown = [name for name in chosen if name not in names]
     if unknown:
-        raise GridPathError(f"the trade-off set has no objective {unknown[0]!r}, expected some of {', '.join(names)}")
+        raise GridPathError(
+            f"the trade-off set has no objective {checks.shown(unknown[0])}, expected some of {', '.join(names)}"
+        )
     if len(chosen) not in (2, 3) or len(set(chosen)) < len(chosen):
         hint = "" if len(names) < 4 else "; choose them by objectives="
         raise GridPathError(f"a front of {len(chosen)} objectives cannot be drawn, expected two or three different ones{hint}")
     return [names.index(name) for name in chosen]
 
 
-def _reference(trade_off, reference) -> np.ndarray | None:
+def as_reference(trade_off, reference) -> np.ndarray | None:
+    """Return the points of a reference front; see `plot_front`."""
     if reference is None:
         return None
-    values = np.atleast_2d(np.asarray(getattr(reference, "F", reference), dtype=float))
+    expected = f"a TradeOffSet or finite numbers of shape (K, {trade_off.F.shape[1]})"
+    values = checks.array("reference", getattr(reference, "F", reference), expected=expected, finite=True)
+    values = np.atleast_2d(values.astype(float))
+    if values.ndim != 2 or not values.size:
+        raise GridPathError(f"reference is {checks.shown(reference)}, expected {expected}")
     if values.shape[1] != trade_off.F.shape[1]:
         raise GridPathError(f"the reference has {values.shape[1]} columns, expected {trade_off.F.shape[1]}, one an objective")
     return values

@@ -12,17 +12,22 @@ from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, ScaledTranslation
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.decision import NAMES
 from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.fields import obstacle_potential
-from pymoo_gridpath.grid import Box, OccupancyGrid
+from pymoo_gridpath.fields import check_field, obstacle_potential
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 from pymoo_gridpath.plotting import style
 
 Units = Literal["cells", "m"]
 
 #: Larger maps are drawn without lines between cells.
 MAX_RULED = 32
+
+# The names of the two ends of a path, their markers and how large these are.
+_ENDS = (("start", "o", 1.0), ("goal", "*", 1.6))
 
 
 def plot_map(
@@ -59,15 +64,20 @@ def plot_map(
     GridPathError
         If the units are unknown, the field has another shape than the grid, or start or goal is off the grid.
     """
-    if units not in ("cells", "m"):
-        raise GridPathError(f"units is {units!r}, expected 'cells' or 'm'")
+    check_grid(grid)
+    style.check_units(units)
+    style.check_axes(ax)
+    legend = checks.flag("legend", legend)
+    field = _field(grid, potential)
+    ends = [(cell, role, *mark) for cell, (role, *mark) in zip((start, goal), _ENDS, strict=True) if cell is not None]
+    for cell, role, *_ in ends:
+        grid.check_cell(cell, role)
     with style.figure_style(ax):
         if ax is None:
             ax = style.new_axes(figure_size(grid))
-        _draw_cells(ax, grid, _field(grid, potential), units)
-        for cell, role, marker, scale in ((start, "start", "o", 1.0), (goal, "goal", "*", 1.6)):
-            if cell is not None:
-                _draw_mark(ax, grid, grid, cell, role, marker, scale, units)
+        _draw_cells(ax, grid, field, units)
+        for cell, role, marker, scale in ends:
+            _draw_mark(ax, grid, grid, cell, role, marker, scale, units)
         if legend:
             _draw_legend(ax, grid)
     return ax
@@ -113,11 +123,14 @@ def plot_paths(
     ----------
     Ahmed and Deb (2013), figures 5 to 7.
     """
-    groups = style.by_path(trade_off, which)
+    groups = style.by_path(check_set(trade_off), which)
+    style.check_units(units)
+    style.check_axes(ax)
+    all_paths, legend = checks.flag("all_paths", all_paths), checks.flag("legend", legend)
     problem = trade_off.problem
     box = drawn_box(trade_off)
     grid = problem.grid.crop(box)
-    if potential is True:
+    if isinstance(potential, bool | np.bool_) and potential:
         field = PathMeasures(problem).field if box == problem.representation.box else obstacle_potential(problem.grid)
     else:
         field = _field(problem.grid, potential)
@@ -130,7 +143,7 @@ def plot_paths(
             label = "other trade-off paths"
             ax.add_collection(LineCollection(others, colors=style.OTHERS, linewidths=0.7, zorder=2, label=label), autolim=False)
         _draw_chosen(ax, trade_off, grid, groups, units)
-        for cell, role, marker, scale in ((problem.start, "start", "o", 1.0), (problem.goal, "goal", "*", 1.6)):
+        for cell, (role, marker, scale) in zip((problem.start, problem.goal), _ENDS, strict=True):
             _draw_mark(ax, problem.grid, grid, cell, role, marker, scale, units)
         style.warn_infeasible(ax, trade_off)
         if legend:
@@ -139,11 +152,12 @@ def plot_paths(
 
 
 def _field(grid: OccupancyGrid, potential: bool | np.ndarray) -> np.ndarray | None:
-    if isinstance(potential, bool):
+    if isinstance(potential, bool | np.bool_):
         return obstacle_potential(grid) if potential else None
-    if np.shape(potential) != grid.shape:
-        raise GridPathError(f"the potential has the shape {np.shape(potential)}, expected that of the grid, {grid.shape}")
-    return np.asarray(potential, dtype=float)
+    field = check_field("potential", potential, grid).astype(float)
+    if not np.isfinite(field[~grid.occupied]).all():
+        raise GridPathError("potential is not finite in a free cell, expected finite numbers there")
+    return np.where(np.isfinite(field), field, 0.0)
 
 
 def _points(record, units: Units) -> np.ndarray:

@@ -10,16 +10,23 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.decision.trade_off import check_set
+from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.files import write_whole
+from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.convergence import as_recorders, plot_convergence
-from pymoo_gridpath.plotting.fronts import plot_front
+from pymoo_gridpath.plotting.fronts import as_reference, plot_front
 from pymoo_gridpath.plotting.maps import Units, drawn_box, figure_size, plot_paths
 from pymoo_gridpath.plotting.style import STYLE
 
 # What each format writes about the time of writing, which would make equal figures differ.
 _METADATA: dict[str, dict] = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 
+
+# A figure is about 7 inches wide, and of more dots than these pictures take gigabytes.
+_MOST_DPI = 1200
 
 _NAMES = ("map", "front", "front_plane", "convergence")
 
@@ -61,24 +68,31 @@ def save_figures(
     Raises
     ------
     GridPathError
-        If a format is unknown or a file cannot be written.
+        If an argument is of another kind or out of its range, a format is unknown, or a file cannot be written.
     """
-    formats = [formats] if isinstance(formats, str) else list(formats)
+    check_set(trade_off)
+    style.check_units(units)
+    dpi = checks.number("dpi", dpi, 1.0, _MOST_DPI, expected=f"dots per inch, 1 to {_MOST_DPI}")
+    formats = checks.names("formats", formats)
     for name in formats:
         if name not in _METADATA:
-            raise GridPathError(f"there is no figure format {name!r}, expected some of {', '.join(_METADATA)}")
-    directory = Path(directory)
+            raise GridPathError(f"there is no figure format {shown(name)}, expected some of {', '.join(_METADATA)}")
+    recorders = None if history is None else as_recorders(history)
+    reference = as_reference(trade_off, reference)
+    directory = Path(checks.file_path("directory", directory))
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise GridPathError(f"{directory}: the folder cannot be made ({error.strerror}), expected a writable place") from None
+        raise GridPathError(
+            f"{visible(directory)}: the folder cannot be made ({error.strerror}), expected a writable place"
+        ) from None
     for name in _NAMES:
         for form in _METADATA:
             # Of an earlier set, and no longer true.
             (directory / f"{name}.{form}").unlink(missing_ok=True)
     written = []
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
-        for name, figure in _figures(trade_off, history, reference, units).items():
+        for name, figure in _figures(trade_off, recorders, reference, units).items():
             for form in formats:
                 data = io.BytesIO()
                 figure.savefig(data, format=form, dpi=dpi, bbox_inches="tight", metadata=_METADATA[form])
@@ -86,7 +100,7 @@ def save_figures(
     return written
 
 
-def _figures(trade_off, history, reference, units: Units) -> dict[str, Figure]:
+def _figures(trade_off, recorders, reference, units: Units) -> dict[str, Figure]:
     """Return the figures by name, unknown to pyplot, which would keep them in memory."""
     figures = {"map": Figure(figsize=figure_size(trade_off.problem.grid.crop(drawn_box(trade_off))), layout="constrained")}
     plot_paths(trade_off, units=units, ax=figures["map"].add_subplot())
@@ -98,8 +112,8 @@ def _figures(trade_off, history, reference, units: Units) -> dict[str, Figure]:
         plane = "front_plane" if len(names) == 3 else "front"
         figures[plane] = Figure(figsize=(4.4, 3.3), layout="constrained")
         plot_front(trade_off, reference, objectives=names[:2], ax=figures[plane].add_subplot())
-    if history is not None:
-        figures["convergence"] = _convergence(as_recorders(history))
+    if recorders is not None:
+        figures["convergence"] = _convergence(recorders)
     return figures
 
 

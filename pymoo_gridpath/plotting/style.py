@@ -13,6 +13,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from numpy.typing import ArrayLike
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
+
 
 @dataclass(frozen=True)
 class NameStyle:
@@ -31,7 +34,7 @@ NAME_STYLES = {
     "knee": NameStyle("#CC3377", (0, (6, 1.5, 1.2, 1.5)), "o"),
 }
 OCCUPIED = "#3b3f45"
-POTENTIAL = ("#ffffff", "#f3d9a4")
+POTENTIAL = ["#ffffff", "#f3d9a4"]  # a list: of a tuple of two, matplotlib 3.8.0 takes the second for an opacity
 OTHERS = "#8a8f98"
 REFERENCE = "#5b5f66"
 WARNING = "#b00020"
@@ -139,6 +142,17 @@ def widen_limits(ax: Axes) -> None:
             formatter.set_useOffset(False)
 
 
+def check_units(units: str) -> None:
+    """Refuse units of a map that are none."""
+    if not (isinstance(units, str) and units in ("cells", "m")):
+        raise GridPathError(f"units is {checks.shown(units)}, expected 'cells' or 'm'")
+
+
+def check_axes(ax: Axes | None) -> None:
+    """Refuse what is no Axes to draw into."""
+    checks.instance("ax", ax, Axes, " of matplotlib", optional=True)
+
+
 def warn_infeasible(ax: Axes, trade_off) -> None:
     """Say above the Axes that the paths are not legal, if so."""
     if not trade_off.feasible:
@@ -149,6 +163,6 @@ def warn_infeasible(ax: Axes, trade_off) -> None:
 def by_path(trade_off, which) -> dict[int, list[str]]:
     """Return the names to show by the index of the path that bears them, in the order of the names."""
     groups: dict[int, list[str]] = {}
-    for name in [which] if isinstance(which, str) else which:
+    for name in checks.names("which", which):
         groups.setdefault(trade_off.index(name), []).append(name)
     return groups

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-import functools
 import warnings
 from collections.abc import Sequence
-from numbers import Real
 from typing import Literal
 
 import numpy as np
 from pymoo.core.problem import Problem
 
-from pymoo_gridpath.errors import CapabilityError, GridPathError
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
-from pymoo_gridpath.fields import BoxedField
-from pymoo_gridpath.frame import Axis
-from pymoo_gridpath.grid import Box, OccupancyGrid
-from pymoo_gridpath.objectives import Objective, Turn, make_objectives
-from pymoo_gridpath.representations import CellSequence, Representation, make_representation
+from pymoo_gridpath.frame import Axis, check_axis
+from pymoo_gridpath.grid import OccupancyGrid, check_grid
+from pymoo_gridpath.objectives import Objective, Turn, boxed_field_of, make_objectives
+from pymoo_gridpath.paths import check_paths
+from pymoo_gridpath.representations import CellSequence, Representation, default_representation, make_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]
 # Chosen by measurement on the shipped maps and random grids, see the parameter.
 DEFAULT_PENALTY = 2.0
 
-# How long pareto_front() may take, since pymoo asks for it unbidden.
-PARETO_SECONDS = 60.0
+# How long pareto_front() may take unless told, since pymoo asks for it unbidden.
+PARETO_SECONDS = 2.0
+
+# Where the operators are that pymoo brings: for real numbers, bits and permutations.
+_OPERATORS_OF_PYMOO = "pymoo.operators."
 
 # Sums of the same costs in another order differ by no more than this share of themselves.
 _ROUNDING = 1e-12
@@ -43,9 +46,10 @@ class GridPathProblem(Problem):
     grid : OccupancyGrid
     start, goal : (int, int)
         Free cells (x, y).
-    representation : {"integer", "binary", "mixed", "absolute", "cells"} or Representation, default "integer"
-        How a path is coded as decision variables. The first four are those of the paper, for paths that never turn back;
-        "cells" codes every path, see `CellSequence`, and needs operators of its own.
+    representation : {"cells", "integer", "binary", "mixed", "absolute"} or Representation, optional
+        How a path is coded as decision variables. "cells" codes every path, see `CellSequence`, and needs `path_operators`; the
+        other four are those of the paper, for paths that never turn back along an axis. The default is "cells", and "integer"
+        where corners may be cut, which is the world of the paper, or an ``axis`` is given, see `default_representation`.
     objectives : sequence of str or Objective, default ("length", "vulnerability")
         What is minimised, in this order; names are "length", "vulnerability" and "turn".
     obstacles : {"penalty", "constraint", "limit"}, default "penalty"
@@ -84,11 +88,16 @@ class GridPathProblem(Problem):
     ``pareto_front()`` and ``pareto_set()`` return the exact front of the legal paths, without penalties, and a path for each
     point (see `exact_front`; the first call computes both). They return None if an objective does not add up along a path,
     that is, if it is neither length nor turn and has no field; if there are more than three objectives; or, with a warning,
-    if ``max_seconds`` (60 by default) do not suffice. pymoo asks for the front of its own accord where it prints progress
-    (``verbose=True``), to show how far a run is from it.
+    if ``max_seconds`` do not suffice: 2 by default, of wall time and without compiling, because pymoo asks for the front of its
+    own accord where it prints progress (``verbose=True``). Large maps and three objectives need more. What did not suffice once
+    is not tried again; only a call with more seconds is a new attempt.
 
     Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
     ``interfering_cells`` of each individual: ``pop.get("turn")``. It draws no random number.
+
+    Algorithms need operators that fit: `path_operators`, `paper_operators`, or all that `make_algorithm` builds. Those that
+    pymoo's algorithms have by default are for real numbers and find no legal path on most maps. The first evaluation of genes
+    that are no whole numbers, or of a generation of such operators without a legal path, warns of that, once a problem.
 
     References
     ----------
@@ -112,29 +121,28 @@ class GridPathProblem(Problem):
         grid: OccupancyGrid,
         start: Sequence[int],
         goal: Sequence[int],
-        representation: str | Representation = "integer",
+        representation: str | Representation | None = None,
         objectives: Sequence[str | Objective] = ("length", "vulnerability"),
         obstacles: Obstacles = "penalty",
         penalty: float | None = None,
         potential_limit: float | None = None,
         axis: Axis = "auto",
     ):
-        if not isinstance(grid, OccupancyGrid):
-            raise GridPathError(f"grid is of the class {type(grid).__name__}, expected an OccupancyGrid; load_map reads one")
-        self.grid = grid
+        self.grid = check_grid(grid)
         self.start, self.goal = grid.check_query(start, goal)
         self.objectives = make_objectives(objectives)
+        checks.one_of("obstacles", obstacles, OBSTACLES)
         if obstacles == "constraint" and penalty is not None:
             raise GridPathError("penalty is for obstacles='penalty' and 'limit', not for obstacles='constraint'")
         self.obstacles = obstacles
         given = self._default_penalty() if penalty is None else penalty
-        if not (isinstance(given, Real) and 0 < given < np.inf):
-            raise GridPathError(f"penalty is {given!r}, expected a positive number")
-        self.penalty = float(given)
-        self.potential_limit = potential_limit
-        self._check_obstacles()
+        self.penalty = checks.number("penalty", given, 0.0, above=True, expected="a positive number")
+        self.potential_limit = self._check_limit(potential_limit)
+        check_axis(axis)
         box = grid.box_of(self.start)
-        fields = [_field(objective, grid, box) for objective in self.objectives]
+        fields = [boxed_field_of(objective, grid, box) for objective in self.objectives]
+        if representation is None:
+            representation = default_representation(grid.corner_cutting, axis)
         if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
             # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
             costs = [field for field in fields if field is not None]
@@ -146,6 +154,9 @@ class GridPathProblem(Problem):
             self._check_representation(representation, axis)
         self.representation = representation
         self._front: ExactResult | None = None
+        # With how many seconds there was none, and why.
+        self._no_front: tuple[float, str] | None = None
+        self._warned_of_operators = False
         self._sums = [None if field is None else representation.prepare(field) for field in fields]
         super().__init__(
             n_var=representation.n_var,
@@ -154,26 +165,27 @@ class GridPathProblem(Problem):
             xl=representation.xl,
             xu=representation.xu,
             vtype=representation.vtype,
+            # Among them the algorithm.
+            requires_kwargs=True,
         )
 
-    def _check_obstacles(self) -> None:
-        if self.obstacles not in OBSTACLES:
-            raise GridPathError(f"obstacles is {self.obstacles!r}, expected one of {', '.join(OBSTACLES)}")
+    def _check_limit(self, potential_limit: float | None) -> float | None:
         if self.obstacles != "limit":
-            if self.potential_limit is not None:
+            if potential_limit is not None:
                 raise GridPathError(f"potential_limit is for obstacles='limit', not for obstacles={self.obstacles!r}")
-        elif "vulnerability" not in self.objective_names:
+            return None
+        if "vulnerability" not in self.objective_names:
             raise GridPathError(
-                f"obstacles='limit' limits the vulnerability, which is not among the objectives {self.objective_names}"
+                f"obstacles='limit' limits the vulnerability, which is not among the objectives {shown(self.objective_names)}"
             )
-        elif not (isinstance(self.potential_limit, Real) and self.potential_limit > 0):
-            raise GridPathError(
-                f"potential_limit is {self.potential_limit!r}, expected a positive number with obstacles='limit'"
-            )
+        expected = "a positive number with obstacles='limit'"
+        return checks.number("potential_limit", potential_limit, 0.0, above=True, infinite=True, expected=expected)
 
     def _check_representation(self, representation: Representation, axis: Axis) -> None:
         if not isinstance(representation, Representation):
-            raise GridPathError(f"representation is {representation!r}, expected a name such as 'integer', or a Representation")
+            raise GridPathError(
+                f"representation is {shown(representation)}, expected a name such as 'integer', or a Representation"
+            )
         if (representation.grid, representation.start, representation.goal) != (self.grid, self.start, self.goal):
             raise GridPathError(
                 f"the {representation.name} representation was made for another grid, start or goal than the problem has"
@@ -192,7 +204,7 @@ class GridPathProblem(Problem):
     # -- the exact front ----------------------------------------------------------------------------------------------
 
     def pareto_front(self, *args, **kwargs):
-        """Return the exact front, shape (N, n_obj), or None, see Notes; ``max_seconds`` (default 60) may be given."""
+        """Return the exact front, shape (N, n_obj), or None, see Notes; ``max_seconds`` (default 2) may be given."""
         return self._unless_none("pareto_front", *args, **kwargs)
 
     def pareto_set(self, *args, **kwargs):
@@ -214,24 +226,23 @@ class GridPathProblem(Problem):
         found = self._exact(max_seconds)
         return None if found is None else found.X
 
-    def _exact(self, max_seconds: float) -> ExactResult | None:
+    def _exact(self, max_seconds: float | None) -> ExactResult | None:
         """Return the exact front, kept for the next call, or None if there is none or the time is too short."""
-        if self._front is None:
-            budget = Budget(max_seconds=max_seconds)
+        budget = Budget(max_seconds=max_seconds)
+        seconds = np.inf if max_seconds is None else max_seconds
+        if self._front is None and (self._no_front is None or seconds > self._no_front[0]):
             try:
                 found = exact_front(self, budget)
             except CapabilityError:
                 return None
             except GridPathError as error:
-                warnings.warn(f"no Pareto front: {error}", stacklevel=7)
-                return None
-            if not found.complete:
-                warnings.warn(
-                    f"no Pareto front: the search {found.message} (max_seconds={max_seconds:g})",
-                    stacklevel=7,
-                )
-                return None
-            self._front = found
+                self._no_front = seconds, str(error)
+            else:
+                more = "; pareto_front(max_seconds=...) gives it more" if found.seconds >= seconds else ""
+                self._front = found if found.complete else None
+                self._no_front = seconds, f"the search {found.message}{more}"
+        if self._front is None and self._no_front is not None:
+            warnings.warn(f"no Pareto front: {self._no_front[1]}", GridPathWarning, stacklevel=7)
         return self._front
 
     # -- measures -----------------------------------------------------------------------------------------------------
@@ -241,22 +252,29 @@ class GridPathProblem(Problem):
         return self.representation.decode(X)
 
     def score(self, paths) -> np.ndarray:
-        """Return the plain objectives of paths, without any penalty, shape (N, n_obj)."""
-        F = [f(paths, sums) for f, sums in zip(self.objectives, self._sums, strict=True)]
-        for objective, values in zip(self.objectives, F, strict=True):
-            if np.shape(values) != (len(paths),):
+        """Return the plain objectives of paths, without any penalty, float, shape (N, n_obj)."""
+        check_paths(paths)
+        F = np.empty((len(paths), self.n_obj))
+        for k, (objective, sums) in enumerate(zip(self.objectives, self._sums, strict=True)):
+            values = np.asarray(objective(paths, sums))
+            if values.shape != (len(paths),) or values.dtype.kind not in "biuf":
                 raise GridPathError(
-                    f"the objective {objective.name!r} returned values of shape {np.shape(values)} for {len(paths)} paths, "
-                    f"expected one a path"
+                    f"the objective {shown(objective.name)} returned values of shape {values.shape} for "
+                    f"{counted(len(paths), 'path')}, of type {values.dtype}, expected one number a path"
                 )
-        return np.column_stack(F)
+            F[:, k] = values
+        if np.isnan(F).any():
+            i, k = np.argwhere(np.isnan(F))[0]
+            raise GridPathError(f"the objective {shown(self.objective_names[k])} returned NaN for path {i}, expected a number")
+        return F
 
     def over_limit(self, vulnerability: np.ndarray) -> np.ndarray:
         """Return by how much vulnerabilities exceed the potential limit; 0 for sums that rounding alone sets apart from it."""
-        assert self.potential_limit is not None
-        over = np.asarray(vulnerability - self.potential_limit, dtype=float)
-        over[np.abs(over) <= _ROUNDING * self.potential_limit] = 0.0
-        return over
+        if self.potential_limit is None:
+            raise GridPathError("the problem has no potential limit, expected one with obstacles='limit'")
+        over = checks.array("vulnerability", vulnerability, expected="an array of numbers") - self.potential_limit
+        over = np.asarray(over, dtype=float)
+        return np.where(np.abs(over) <= _ROUNDING * self.potential_limit, 0.0, over)
 
     def _evaluate(self, x, out, *args, **kwargs):
         # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
@@ -274,40 +292,34 @@ class GridPathProblem(Problem):
         out["F"] = F
         out["turn"] = turn
         out["interfering_cells"] = interfering
+        if not self._warned_of_operators:
+            self._warn_of_operators(np.asarray(x), interfering, kwargs.get("algorithm"))
+
+    def _warn_of_operators(self, X: np.ndarray, interfering: np.ndarray, algorithm) -> None:
+        """Warn, once, of genes or generations that come of operators which know nothing of paths."""
+        if X.dtype.kind == "f" and (np.rint(X) != X).any():
+            what = "genes that are no whole numbers, as operators for real numbers make them, hardly ever code a legal path"
+        elif len(interfering) and interfering.all() and (name := _maker_of_pymoo(algorithm)):
+            what = f"there is no legal path among {len(X)} of pymoo's {name}, which knows nothing of paths"
+        else:
+            return
+        self._warned_of_operators = True
+        warnings.warn(
+            f"{what}; operators that make legal paths: NSGA2(**path_operators(problem)), with path_operators from "
+            f"pymoo_gridpath.operators",
+            GridPathWarning,
+            stacklevel=2,
+        )
 
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         paths = self.decode(X)
         return self.score(paths), paths.turn, paths.interfering_cells
 
 
-def _field(objective: Objective, grid: OccupancyGrid, box: Box) -> np.ndarray | BoxedField | None:
-    """Return the field of an objective, that of a local one in a box only."""
-    if not objective.local or box == grid.whole:
-        return _checked(objective, grid)
-    return BoxedField(objective.field_in(grid, box), box, grid.width, functools.partial(objective.field, grid))
-
-
-def _checked(objective: Objective, grid: OccupancyGrid) -> np.ndarray | None:
-    """Return the field of an objective, zero in occupied cells if it is not finite there, or None if it has none."""
-    given = objective.field(grid)
-    if given is None:
-        return None
-    try:
-        field = np.asarray(given)
-    except ValueError:  # rows of different lengths
-        field = np.asarray(None)
-    if field.shape != grid.shape or field.dtype.kind not in "biuf":
-        what = f"{field.dtype} of shape {field.shape}" if field.dtype.kind != "O" else type(given).__name__
-        raise GridPathError(
-            f"the field of the objective {objective.name!r} is {what}, expected numbers of shape {grid.shape}, the (height, "
-            f"width) of the grid"
-        )
-    if np.isfinite(field).all():
-        return field
-    if not np.isfinite(field[~grid.occupied]).all():
-        y, x = np.argwhere(~np.isfinite(field) & ~grid.occupied)[0]
-        raise GridPathError(
-            f"the field of the objective {objective.name!r} is {field[y, x]:g} in the free cell ({x}, {y}), expected a finite "
-            f"number; mark cells that no path may enter as occupied"
-        )
-    return np.where(np.isfinite(field), field, 0.0)
+def _maker_of_pymoo(algorithm) -> str:
+    """Return the name of the operator that made the rows under evaluation if it is one that pymoo brings, else nothing."""
+    if getattr(algorithm, "is_initialized", False):
+        maker = getattr(getattr(algorithm, "mating", None), "crossover", None)
+    else:
+        maker = getattr(getattr(algorithm, "initialization", None), "sampling", None)
+    return type(maker).__name__ if type(maker).__module__.startswith(_OPERATORS_OF_PYMOO) else ""

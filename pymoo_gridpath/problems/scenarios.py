@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridError
 from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
+
+#: The largest grid to draw has so many cells a side.
+MOST_CELLS = 4096
 
 
 def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | int) -> OccupancyGrid:
@@ -21,7 +25,7 @@ def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | 
     Parameters
     ----------
     size : int
-        Cells a side, at least 2.
+        Cells a side, 2 to 4096.
     p0 : float
         Probability of an obstacle in every cell off the path, 0 to 1.
     random_state : numpy.random.Generator or int
@@ -35,17 +39,19 @@ def random_dense_grid(size: int, p0: float, random_state: np.random.Generator | 
     Raises
     ------
     GridError
-        If size or p0 is out of its range.
+        If an argument is of another kind or out of its range.
 
     References
     ----------
     Ahmed and Deb (2013), section 6.
     """
-    if size < 2:
-        raise GridError(f"size is {size}, expected at least 2 cells a side")
-    if not 0.0 <= p0 <= 1.0:
-        raise GridError(f"p0 is {p0}, expected a probability from 0 to 1")
-    random_state = np.random.default_rng(random_state)
+    size = checks.whole("size", size, 2, MOST_CELLS, expected=f"2 to {MOST_CELLS:,} cells a side", error=GridError)
+    p0 = checks.number("p0", p0, 0.0, 1.0, expected="a probability from 0 to 1", error=GridError)
+    if not isinstance(random_state, np.random.Generator):
+        random_state = checks.whole(
+            "random_state", random_state, 0, expected="a seed or a numpy.random.Generator", error=GridError
+        )
+        random_state = np.random.default_rng(random_state)
     empty = OccupancyGrid(np.zeros((size, size), dtype=bool), corner_cutting=True)
     frame = MonotoneFrame(empty, (0, 0), (size - 1, size - 1))
     rows = np.sort(random_state.integers(0, size, size=size - 1))

@@ -42,7 +42,7 @@ class AbsoluteRepresentation(MonotoneRepresentation):
 
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the genes of paths, the inverse of `decode` as in `IntegerRepresentation.encode`, int, shape (N, n_var)."""
-        return paths.leave[:, :-1].copy()
+        return self._own(paths).leave[:, :-1].copy()
 
     def _rewrite(self, X, moves, fixed):
         return self.frame.start_row + np.cumsum(fixed, axis=1)

@@ -8,13 +8,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pymoo_gridpath import checks
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.fields import BoxedField, check_field
 from pymoo_gridpath.frame import Axis, MonotoneFrame
 from pymoo_gridpath.grid import Box, Cell, OccupancyGrid
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
 from pymoo_gridpath.search.moves import HEADINGS, Moves
-from pymoo_gridpath.search.sequences import Sequences
+from pymoo_gridpath.search.sequences import Sequences, check_sequences
 
 
 class Representation(ABC):
@@ -75,7 +78,7 @@ class Representation(ABC):
 
     def fits(self, sequences: Sequences) -> np.ndarray:
         """Return which paths are no longer than a row can code, bool, shape (N,); all, unless rows have limited room."""
-        return np.ones(len(sequences.lengths), dtype=bool)
+        return np.ones(len(check_sequences(sequences, self.moves.n_cells).lengths), dtype=bool)
 
     def to_sequences(self, X: np.ndarray) -> Sequences:
         """Return the cells that the decoded paths visit, the inverse of `from_sequences`.
@@ -90,6 +93,9 @@ class Representation(ABC):
             N paths, by the indices of cells that `moves` has, -1 for those outside the box; no cell follows itself but these.
         """
         return self._in_box(self.decode(X))
+
+    def _checked_ends(self, sequences: Sequences) -> Sequences:
+        return check_ends(sequences, self, self.moves.index(self.start), self.moves.index(self.goal), self.moves.n_cells)
 
     def _in_box(self, paths) -> Sequences:
         """Return the cells that decoded paths visit by the indices that `moves` has."""
@@ -149,19 +155,25 @@ class Representation(ABC):
         GridPathError
             If X has another number of columns or holds what is no number.
         """
-        X = np.atleast_2d(X)
+        expected = f"rows of {self.n_var} genes of the {self.name} representation"
+        X = np.atleast_2d(checks.array("X", X, kinds="biufO", expected=expected))
+        if X.ndim != 2:
+            raise GridPathError(f"X is {shown(X)}, expected {expected}")
         if X.shape[1] != self.n_var:
             raise GridPathError(f"X has {X.shape[1]} columns, expected {self.n_var} genes of the {self.name} representation")
-        if X.dtype.kind == "b":
-            return X.astype(np.int64)
-        if X.dtype.kind not in "iu":
-            X = X.astype(float)
+        if X.dtype.kind == "b" and self.vtype is bool:
+            return X.astype(np.int64, order="C")
+        if X.dtype.kind not in "biu":
+            try:
+                X = X.astype(float)
+            except (TypeError, ValueError, OverflowError):
+                X = np.full(X.shape, np.nan)
             if not np.isfinite(X).all():
                 raise GridPathError(
                     f"X holds values that are no finite numbers, expected genes of the {self.name} representation"
                 )
             X = np.rint(X)
-        return np.clip(X, self.xl, self.xu).astype(np.int64, copy=False)
+        return np.clip(X, self.xl, self.xu).astype(np.int64, order="C", copy=False)
 
 
 def representation_of(problem) -> Representation:
@@ -209,12 +221,12 @@ class MonotoneRepresentation(Representation):
         If these lose the cost of a cell, as those of cheap cells beside dear ones, it is returned by the index of the cell, in
         float, shape (height * width,).
         """
-        field = np.asarray(field)
+        field = check_field("field", np.asarray(field) if isinstance(field, BoxedField) else field, self.grid).astype(float)
         with np.errstate(invalid="ignore", over="ignore"):
             sums = self.frame.prefix_sums(field)
             if np.array_equal(np.diff(sums, axis=1), self.frame.columns(field)):
                 return sums
-        return field.astype(float, copy=False).ravel()
+        return field.ravel()
 
     @functools.cached_property
     def moves(self) -> Moves:
@@ -246,8 +258,8 @@ class MonotoneRepresentation(Representation):
 
     def _column_paths(self, sequences: Sequences) -> ColumnPaths:
         """Return the paths that enter and leave each column where the given ones do."""
+        sequences = self._checked_ends(sequences)
         frame, shape = self.frame, (len(sequences.lengths), self.frame.n_columns)
-        check_ends(sequences, self, self.moves.index(self.start), self.moves.index(self.goal))
         column, row = frame.from_cells(self.moves.cells(sequences.cells))
         first = np.zeros(len(column), dtype=bool)
         first[sequences.offsets[:-1]] = True
@@ -261,6 +273,15 @@ class MonotoneRepresentation(Representation):
         enters = first | (np.diff(column, prepend=-1) != 0)
         leaves = np.roll(enters, -1)
         return ColumnPaths(frame, row[enters].astype(np.int32).reshape(shape), row[leaves].astype(np.int32).reshape(shape))
+
+    def _own(self, paths: ColumnPaths) -> ColumnPaths:
+        """Return paths if they are of this frame."""
+        frame = checks.instance("paths", paths, ColumnPaths, ", as decode returns them").frame
+        if frame is not self.frame and any(
+            getattr(frame, key) != getattr(self.frame, key) for key in ("axis", "start", "goal", "grid")
+        ):
+            raise GridPathError("paths are of another grid, start, goal or axis than the representation, expected its own")
+        return paths
 
     @property
     def _n_moves(self) -> int:
@@ -311,6 +332,7 @@ class MonotoneRepresentation(Representation):
         numpy.ndarray, shape (N, n_var), dtype `vtype`
             A new array; rows that need no fixing are as they were.
         """
+        checks.instance("random_state", random_state, np.random.Generator, " such as numpy.random.default_rng(1)")
         X = self.genes(X).astype(self.vtype)
         moves = self.row_moves(X)
         outside = _rows_and_outside(moves, self.frame)[1]
@@ -324,14 +346,21 @@ class MonotoneRepresentation(Representation):
         """Return X with the genes changed where ``fixed`` moves differ from ``moves``."""
 
 
-def check_ends(sequences: Sequences, representation: Representation, first: int, last: int) -> None:
-    """Raise GridPathError if a path does not lead from the start to the goal of a representation, the cells first and last."""
+def check_ends(sequences: Sequences, representation: Representation, first: int, last: int, n_cells: int) -> Sequences:
+    """Return sequences if each leads from the start to the goal of a representation, the cells first and last of n_cells.
+
+    Raises
+    ------
+    GridPathError
+    """
+    sequences = check_sequences(sequences, n_cells)
     cells, offsets, lengths = *sequences, sequences.lengths
     if (lengths < 1).any() or (cells[offsets[:-1]] != first).any() or (cells[offsets[1:] - 1] != last).any():
         raise GridPathError(
             f"a path leads between other cells than start {representation.start} and goal {representation.goal}, "
             f"expected paths of the query"
         )
+    return sequences
 
 
 def _rows_and_outside(moves: np.ndarray, frame: MonotoneFrame) -> tuple[np.ndarray, np.ndarray]:

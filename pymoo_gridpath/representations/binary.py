@@ -94,7 +94,7 @@ class BinaryRepresentation(MonotoneRepresentation):
         The inverse of `decode` but for two redundancies: a horizontal step without a climb is 10, never 01, and a path
         that climbs back after a diagonal step, which the coding leaves out as dominated, gets the bits of the horizontal step.
         """
-        frame = self.frame
+        frame, paths = self.frame, self._own(paths)
         start = (paths.leave[:, 0] - frame.start_row) % frame.n_rows
         step = paths.enter[:, 1:] - paths.leave[:, :-1]
         gain = np.diff(paths.leave[:, :-1], axis=1)

@@ -5,24 +5,26 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-import operator
 from collections.abc import Sequence
-from numbers import Real
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.fields import BoxedField, obstacle_potential
-from pymoo_gridpath.grid import Box, OccupancyGrid
-from pymoo_gridpath.paths import CellPaths
+from pymoo_gridpath.fields import BoxedField, check_costs, check_field, obstacle_potential
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
+from pymoo_gridpath.paths import CellPaths, check_paths
 from pymoo_gridpath.representations.base import Representation, check_ends
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.sequences import Sequences, cut_loops, mend
+from pymoo_gridpath.search.sequences import Sequences, check_sequences, cut_loops, mend
 
 # Of up to so many fields sums are looked at for the default length of a row: as many as an exact front has objectives.
 _MOST_TOGETHER = 3
+
+# More genes than any map has cells to visit; arrays of more would be of gigabytes.
+MOST_GENES = 2**24
 
 
 class CellSequence(Representation):
@@ -60,7 +62,8 @@ class CellSequence(Representation):
     GridError, UnreachableError
         If start or goal is no free cell, both are the same, or no path joins them.
     GridPathError
-        If max_cells is no whole number, or too small for a shortest path, or spare is less than 1.
+        If max_cells is no whole number, too small for a shortest path or over 16 million, a field has another shape or negative
+        costs, or spare is less than 1.
 
     Attributes
     ----------
@@ -89,10 +92,9 @@ class CellSequence(Representation):
         fields=(),
         spare: float = 1.0,
     ):
-        self.grid = grid
+        self.grid = check_grid(grid)
         self.start, self.goal = grid.check_query(start, goal)
-        if not (isinstance(spare, Real) and 1.0 <= spare < math.inf):
-            raise GridPathError(f"spare is {spare!r}, expected a factor of 1 or more")
+        spare = checks.number("spare", spare, 1.0, expected="a factor of 1 or more")
         self.max_cells = _room(self, max_cells, fields, spare)
         self.n_var = self.max_cells
         self.xl = np.zeros(self.n_var, dtype=int)
@@ -122,11 +124,12 @@ class CellSequence(Representation):
 
     def encode(self, paths) -> np.ndarray:
         """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""
-        return self._rows(paths.sequences)
+        sequences = check_paths(paths).sequences
+        return self._rows(check_ends(sequences, self, int(self.xl[0]), int(self.xl[-1]), self.grid.occupied.size))
 
     def fits(self, sequences: Sequences) -> np.ndarray:
         """Return which paths have no more cells than a row has genes, bool, shape (N,)."""
-        return sequences.lengths <= self.max_cells
+        return check_sequences(sequences, self.moves.n_cells).lengths <= self.max_cells
 
     def from_sequences(self, sequences: Sequences) -> np.ndarray:
         """Return the rows of genes that code paths given by the cells that they visit.
@@ -146,12 +149,12 @@ class CellSequence(Representation):
         GridPathError
             If a path leads from or to another cell, or has more than ``max_cells`` cells even without loops.
         """
-        return self._rows(Sequences(self.moves.to_grid(sequences.cells), sequences.offsets))
+        cells, offsets = self._checked_ends(sequences)
+        return self._rows(Sequences(self.moves.to_grid(cells), offsets))
 
     def _rows(self, sequences: Sequences) -> np.ndarray:
         """Return the rows of genes that code paths given by the indices of cells in the whole grid."""
-        check_ends(sequences, self, int(self.xl[0]), int(self.xl[-1]))
-        fits = self.fits(sequences)
+        fits = sequences.lengths <= self.max_cells
         if fits.all():
             return self._padded(sequences)
         X = np.empty((len(fits), self.n_var), dtype=np.int64)
@@ -162,7 +165,7 @@ class CellSequence(Representation):
     def _padded(self, sequences: Sequences) -> np.ndarray:
         """Return the rows of paths, filled up with the goal."""
         lengths = sequences.lengths
-        if not self.fits(sequences).all():
+        if (lengths > self.max_cells).any():
             raise GridPathError(
                 f"a path visits {lengths.max()} cells, expected at most {self.max_cells}, the max_cells of the {self.name} "
                 f"representation; give CellSequence a larger one"
@@ -175,10 +178,7 @@ class CellSequence(Representation):
         """Return a field over the grid by the index of the cell, shape (height * width,)."""
         if isinstance(field, BoxedField):
             return field
-        field = np.asarray(field)
-        if field.shape != self.grid.shape:
-            raise GridPathError(f"a field has shape {field.shape}, expected {self.grid.shape}, the (height, width) of the grid")
-        return field.ravel().astype(float if field.dtype.kind == "f" else np.int64)
+        return check_field("field", field, self.grid).astype(float).ravel()
 
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
         """Return X with rows rewritten that are no legal paths.
@@ -220,25 +220,22 @@ def _room(coding: CellSequence, max_cells: int | None, fields, spare: float) -> 
     if max_cells is None:
         regions = grid.regions[box.slices]
         reachable = np.count_nonzero(regions == regions.flat[start])
-        fields = [_scaled(field, box, alone=len(fields) == 1) for field in fields] or [obstacle_potential(grid, box=box)]
+        given = [
+            field if isinstance(field, BoxedField) else check_costs("a field", field, grid)
+            for field in checks.items("fields", fields, "costs of cells")
+        ]
+        fields = [_scaled(field, box, alone=len(given) == 1) for field in given] or [obstacle_potential(grid, box=box)]
         # Of several together, too: a path that costs nothing in either may be longer than those that cost nothing in one.
         sizes = range(1, 1 + (len(fields) if len(fields) <= _MOST_TOGETHER else 1))
         together = (np.sum(some, axis=0) for n in sizes for some in itertools.combinations(fields, n))
         safest = max(1 + math.floor(_safest_length(graph, field.ravel(), start, goal) + 1e-6) for field in together)
         return min(math.ceil(spare * max(safest, math.ceil(1.5 * least) + 8)), int(reachable))
-    try:
-        given = operator.index(max_cells)
-    except TypeError:
-        given = 0
-    if given < least:
-        raise GridPathError(
-            f"max_cells is {max_cells!r}, expected a whole number of at least {least}, the cells of a shortest path"
-        )
-    return given
+    expected = f"a whole number of at least {least}, the cells of a shortest path"
+    return checks.whole("max_cells", max_cells, least, MOST_GENES, expected=expected)
 
 
 def _scaled(field: np.ndarray | BoxedField, box: Box, alone: bool) -> np.ndarray:
-    """Return the part of a field in a box, without negative costs, relative to the largest one of the whole grid.
+    """Return the part of a field in a box, relative to the largest cost of the whole grid.
 
     Where it stands ``alone``, the scale does not matter, and no other part need be known.
     """
@@ -247,12 +244,13 @@ def _scaled(field: np.ndarray | BoxedField, box: Box, alone: bool) -> np.ndarray
     else:
         whole = np.asarray(field)
         inside = whole[box.slices]
-    return np.maximum(inside, 0.0) / (max(whole.max(), 0.0) or 1.0)
+    return inside / (whole.max() or 1.0)
 
 
 def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal: int) -> float:
     """Return the length of the shortest among the paths that are cheapest in a field."""
-    tail, head = np.repeat(np.arange(field.size), np.diff(graph.indptr)), graph.indices
+    head = graph.indices
+    tail = np.repeat(np.arange(field.size, dtype=head.dtype), np.diff(graph.indptr))
     cost = sparse.csr_array((field[head].astype(float), head, graph.indptr), shape=graph.shape)
     least = csgraph.dijkstra(cost, indices=start)
     # The cheapest paths are those whose every step adds no more than it must; sums of potentials are exact, others nearly.

@@ -65,7 +65,7 @@ class IntegerRepresentation(MonotoneRepresentation):
         (section 2.3). It gets the genes of the path that leaves every column at the same row, which is no longer and
         crosses no other cell.
         """
-        return np.diff(paths.leave[:, :-1], axis=1, prepend=self.frame.start_row)
+        return np.diff(self._own(paths).leave[:, :-1], axis=1, prepend=self.frame.start_row)
 
     def _rewrite(self, X, moves, fixed):
         return fixed

@@ -63,7 +63,7 @@ class MixedRepresentation(MonotoneRepresentation):
         horizontal last step 0. A last step away from the goal's row becomes a horizontal one; other paths that have no code of
         their own are treated as in `IntegerRepresentation.encode`.
         """
-        moves = np.diff(paths.leave[:, :-1], axis=1, prepend=self.frame.start_row)
+        moves = np.diff(self._own(paths).leave[:, :-1], axis=1, prepend=self.frame.start_row)
         ahead = np.sign(self.frame.goal_row - paths.leave[:, -2:-1])
         last = (ahead != 0) & (paths.enter[:, -1:] == paths.leave[:, -2:-1] + ahead)
         integers = np.concatenate([moves[:, :1], np.abs(moves[:, 1:])], axis=1)

@@ -5,13 +5,11 @@ from __future__ import annotations
 import argparse
 import contextlib
 import math
-import sys
 from pathlib import Path
 
 from pymoo_gridpath.argument_types import folder, positive
-from pymoo_gridpath.compiled import on_compiling
-from pymoo_gridpath.errors import counted
-from pymoo_gridpath.progress import say_that_it_compiles
+from pymoo_gridpath.errors import counted, visible
+from pymoo_gridpath.progress import say
 from pymoo_gridpath.study.progress import duration
 
 EXIT_OK, EXIT_FAILED_RUNS, EXIT_INTERRUPTED = 0, 1, 130
@@ -79,11 +77,10 @@ def _init(arguments) -> int:
     from pymoo_gridpath.study.specification.toml_file import write_starter
 
     path = write_starter(arguments.file)
-    print(f"written: {path}\nnext: pymoo-gridpath study check {path}")
+    print(f"written: {visible(path)}\nnext: pymoo-gridpath study check {visible(path)}")
     return EXIT_OK
 
 
-@on_compiling(say_that_it_compiles)
 def _check(arguments) -> int:
     """Check a study file, and say how many runs it asks for, how many are stored, and about how long the others will take."""
     from pymoo_gridpath.study.estimate import estimate
@@ -92,25 +89,24 @@ def _check(arguments) -> int:
 
     study = load_study(arguments.file)
     plan = study.plan()
-    print(f"{plan.name}: {_counts(study, plan)}")
+    print(f"{visible(plan.name)}: {_counts(study, plan)}")
     only_references = sum(run.algorithm is None for run in plan.runs)
     measured = f", {only_references} of them exact fronts to measure against" if only_references else ""
     print(f"runs: {len(plan.runs):,}{measured}", flush=True)
     due = plan.runs
     folder = _results(arguments)
     if folder.is_dir():
-        found = Store(folder).check(run.key for run in plan.runs)
+        found = Store(folder).check([run.key for run in plan.runs])
         missing = set(found.missing)
         due = tuple(run for run in plan.runs if run.key in missing)
         failed = f", {len(found.failed):,} of them failed" if found.failed else ""
         damaged = f", {len(found.damaged):,} damaged" if found.damaged else ""
-        print(f"stored in {folder}: {len(found.meta):,}{failed}{damaged}; to run: {len(due):,}", flush=True)
+        print(f"stored in {visible(folder)}: {len(found.meta):,}{failed}{damaged}; to run: {len(due):,}", flush=True)
     if due:
         print(f"time: {_time(estimate(plan, due), len(due), arguments.jobs)}")
     return EXIT_OK
 
 
-@on_compiling(say_that_it_compiles)
 def _run(arguments) -> int:
     """Run what is not stored yet of a study; what was stored by an earlier run, even if it was killed, is kept."""
     from pymoo_gridpath.study.executors import LocalProcesses, dask_executor
@@ -120,7 +116,7 @@ def _run(arguments) -> int:
     study = load_study(arguments.file)
     plan = study.plan()
     folder = _results(arguments)
-    print(f"{plan.name}: {_counts(study, plan)}; {len(plan.runs):,} runs, stored in {folder}", flush=True)
+    print(f"{visible(plan.name)}: {_counts(study, plan)}; {len(plan.runs):,} runs, stored in {visible(folder)}", flush=True)
     with contextlib.ExitStack() as stack:
         executor = None
         if arguments.dask is not None:
@@ -128,11 +124,11 @@ def _run(arguments) -> int:
         elif arguments.jobs > 1:
             executor = stack.enter_context(LocalProcesses(arguments.jobs))
         text = None if study.source is None else study.source.text
-        outcome = run_study(plan, folder, executor, retry_failed=arguments.retry_failed, study=text, tell=_tell)
+        outcome = run_study(plan, folder, executor, retry_failed=arguments.retry_failed, study=text, tell=say)
     if outcome.interrupted:
         return EXIT_INTERRUPTED
     print(f"done: {outcome.n_run:,} run now, {outcome.n_done_before:,} before, {outcome.n_failed:,} failed")
-    print(f"next: pymoo-gridpath study report {folder}")
+    print(f"next: pymoo-gridpath study report {visible(folder)}")
     return EXIT_FAILED_RUNS if outcome.n_failed else EXIT_OK
 
 
@@ -142,15 +138,11 @@ def _report(arguments) -> int:
 
     files = [Path(file) for file in write_report(arguments.folder, output=arguments.output, target=arguments.target)]
     page = next((file for file in files if file.suffix == ".html"), files[0])
-    print(f"written: {len(files)} files in {page.parent}\npage: {page}")
+    print(f"written: {len(files)} files in {visible(page.parent)}\npage: {visible(page)}")
     return EXIT_OK
 
 
 # -- parts --------------------------------------------------------------------------------------------------------------
-
-
-def _tell(message: str) -> None:
-    print(f"pymoo-gridpath: {message}", file=sys.stderr, flush=True)
 
 
 def _results(arguments) -> Path:

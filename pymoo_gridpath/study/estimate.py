@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
@@ -42,13 +42,16 @@ class Estimate:
 def estimate(plan: Plan, runs: Iterable[PlannedRun] | None = None, max_seconds: float = 20.0) -> Estimate:
     """Return the time that runs will take, extrapolated from a few generations of one run of each kind.
 
+    Compiling does not count, neither here nor in what is returned: it is done once in a process, and some algorithms, such as
+    AGE-MOEA, compile functions as late as in their second generation.
+
     Parameters
     ----------
     plan : Plan
     runs : iterable of PlannedRun, optional
         All of the plan by default.
     max_seconds : float, default 20
-        About how long measuring may take; a generation that has begun is ended.
+        About how long measuring may take, without compiling; a generation that has begun is ended.
 
     Raises
     ------
@@ -58,13 +61,13 @@ def estimate(plan: Plan, runs: Iterable[PlannedRun] | None = None, max_seconds: 
     kinds: dict[tuple[str, int | None], list[PlannedRun]] = {}
     for run in plan.runs if runs is None else runs:
         kinds.setdefault((plan.problems[run.problem].group, run.algorithm), []).append(run)
-    end = time.monotonic() + max_seconds
     seconds: list[float] = []
     counts: list[int] = []
     open_ended = False
     warm: set[int | None] = set()
+    end = working_seconds() + max_seconds
     for k, ((_, algorithm), members) in enumerate(kinds.items()):
-        left = end - time.monotonic()
+        left = end - working_seconds()
         if left <= 0 and seconds:
             break
         task = plan.task(members[0])
@@ -92,7 +95,7 @@ def estimate(plan: Plan, runs: Iterable[PlannedRun] | None = None, max_seconds: 
 
 def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     """Return the seconds that a run will take, and whether that is but a bound for an exact front."""
-    begin = time.perf_counter()
+    begin = working_seconds()
     problem = build_problem(task.problem, task.grid)
     if is_exact(task.algorithm):
         return _measure_exact(task.algorithm, problem, max_seconds)
@@ -104,7 +107,7 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     while algorithm.has_next() and (not records or records[-1][0] < max_seconds):
         algorithm.next()
         done = algorithm.evaluator.n_eval if "evaluations" in task.budget else len(records) + 1
-        records.append((time.perf_counter() - begin, done))
+        records.append((working_seconds() - begin, done))
     (first, first_done), (last, last_done) = records[0], records[-1]
     if not algorithm.has_next():
         return last, False
@@ -114,11 +117,11 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
 
 
 def _measure_exact(algorithm: Mapping[str, Any], problem, max_seconds: float) -> tuple[float, bool]:
-    begin = time.perf_counter()
+    begin = working_seconds()
     own = algorithm["max_seconds"]
     search: Any = build_algorithm({**algorithm, "max_seconds": max_seconds if own is None else min(own, max_seconds)}, problem)
     search.setup(problem)
     search.next()
-    took = time.perf_counter() - begin
+    took = working_seconds() - begin
     ended = search.found.complete or algorithm["max_labels"] is not None
     return (took, False) if ended else (max(took, own or 0.0), True)

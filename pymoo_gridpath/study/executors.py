@@ -13,6 +13,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from multiprocessing.connection import wait as wait_for_any
 from typing import Any
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 
 # What numpy's and scipy's libraries and numba read when they are loaded.
@@ -21,6 +22,9 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLI
 _STARTS = 3
 # Tasks kept in flight with an executor that does not say how many workers it has.
 _UNKNOWN_CAPACITY = 64
+
+# No computer has use for more.
+_MOST_PROCESSES = 61 if os.name == "nt" else 4096  # Windows waits for no more than 63 things at once
 
 
 class StudyExecutor(Executor):
@@ -82,9 +86,7 @@ class LocalProcesses(StudyExecutor):
     """
 
     def __init__(self, n_processes: int):
-        if n_processes < 1:
-            raise GridPathError(f"the number of processes is {n_processes}, expected at least 1")
-        self.n_processes = n_processes
+        self.n_processes = n_processes = checks.whole("the number of processes", n_processes, 1, _MOST_PROCESSES)
         # One more each, so that none waits for the coordinator.
         self.capacity = 2 * n_processes
         self._pool: ProcessPoolExecutor | None = None
@@ -245,6 +247,8 @@ def dask_executor(address: str, timeout: float = 30.0) -> StudyExecutor:
         If the package distributed is not installed here; if the scheduler does not answer or has no worker in time; if a worker
         cannot import this package, or has other versions of what decides about the results than this process.
     """
+    checks.text("address", address)
+    timeout = checks.number("timeout", timeout, 0.0, expected="seconds, zero or more")
     try:
         importlib.import_module("distributed")
     except ImportError as error:

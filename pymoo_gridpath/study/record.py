@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 
 #: Version of the file's layout; a reader refuses files of a later one.
@@ -64,7 +65,7 @@ class History:
 
     def front(self, k: int) -> np.ndarray:
         """Return the legal non-dominated points of record k, shape (n, n_obj), sorted by the objectives from the first on."""
-        k = range(len(self))[k]
+        k = range(len(self))[checks.whole("k", k, -len(self), len(self) - 1)]
         points = self.points[(self.first <= k) & (k <= self.last)]
         return points[np.lexsort(points.T[::-1])]
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.study.execute import execute, failed_run
 from pymoo_gridpath.study.executors import describe, study_executor
@@ -100,6 +101,11 @@ def run_study(
     """
     if isinstance(plan, Study):
         plan = plan.plan()
+    checks.instance("plan", plan, Plan, " or a Study")
+    if executor is not None:
+        checks.function("executor", getattr(executor, "submit", executor), "an Executor of concurrent.futures")
+    retry_failed = checks.flag("retry_failed", retry_failed)
+    checks.function("tell", tell, "a function of a sentence", optional=True)
     store = Store(folder)
     messages: list[str] = []
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.files import UNFINISHED, make_folder, replace_file
 from pymoo_gridpath.study.lock import locked
@@ -22,6 +23,9 @@ from pymoo_gridpath.study.record import DamagedRecordError, RunRecord, from_byte
 # Folders of runs are named by the first two digits of their keys.
 _PART = re.compile("[0-9a-f]{2}")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+# Keys are hashes of what a run is; longer names of files are none on most systems.
+_LONGEST_KEY = 200
 
 
 @dataclass(frozen=True)
@@ -69,10 +73,12 @@ class Store:
     """
 
     def __init__(self, folder: str | os.PathLike):
-        self.folder = Path(folder)
+        self.folder = Path(checks.file_path("folder", folder))
 
     def path(self, key: str) -> Path:
         """Return the file of a run, whether it is there or not."""
+        if not isinstance(key, str) or not 0 < len(key) <= _LONGEST_KEY or Path(key).name != key or "\0" in key:
+            raise GridPathError(f"key is {checks.shown(key)}, expected the key of a run")
         return self.folder / "runs" / key[:2] / f"{key}.npz"
 
     def write(self, key: str, data: bytes) -> None:
@@ -83,7 +89,7 @@ class Store:
         GridPathError
             If it cannot be written, as when the disk is full.
         """
-        self._write(self.path(key), data)
+        self._write(self.path(key), checks.instance("data", data, bytes))
 
     def read(self, key: str, genes: bool = True) -> RunRecord:
         """Return a run.
@@ -101,7 +107,7 @@ class Store:
         DamagedRecordError
             If its file is not what was written.
         """
-        record = from_bytes(self._read(key), genes)
+        record = from_bytes(self._read(key), checks.flag("genes", genes))
         if record.key != key:
             raise DamagedRecordError(f"the file of run {key} holds the run {record.key}")
         return record
@@ -119,7 +125,7 @@ class Store:
         for path in list(self._odd()):
             found.odd.append(self._set_aside(path) if set_aside else path)
         present = self._present()
-        for key in keys:
+        for key in checks.names("keys", keys):
             if key not in present:
                 found.missing.append(key)
                 continue
@@ -143,6 +149,8 @@ class Store:
 
     def write_plan(self, plan: Plan, study: str | None = None) -> None:
         """Store the plan, and the text of the study file if there is one."""
+        checks.instance("plan", plan, Plan)
+        checks.instance("study", study, str, " of the study file", optional=True)
         self._write(self.folder / "plan.json", json.dumps(plan.to_json(), separators=(",", ":")).encode())
         file = self.folder / "study.toml"
         if study is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import importlib.util
 import pickle
 import subprocess
@@ -17,10 +18,10 @@ from pymoo.core.repair import Repair
 from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
 from pymoo.optimize import minimize
 
-from pymoo_gridpath.algorithms import CAPABILITIES, capability_table, make_algorithm
+from pymoo_gridpath.algorithms import CAPABILITIES, capability_table, make_algorithm, reference_directions
 from pymoo_gridpath.algorithms.factory import _PACKAGES, build
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.operators import paper_operators
+from pymoo_gridpath.operators import default_operators, paper_operators, path_operators
 
 ROWS = list(CAPABILITIES.values())
 USABLE = [row for row in ROWS if not row.unfit]
@@ -140,6 +141,35 @@ def test_operators_that_the_table_names_are_called(row, make_problem, arguments)
     algorithm = make_algorithm(row.name, problem, POP_SIZE, operators=spies, **arguments(row, n_obj))
     solve(problem, algorithm, copy_algorithm=False)
     assert called == set(names)
+
+
+@pytest.mark.parametrize("make", [path_operators, default_operators])
+@pytest.mark.parametrize("row", named(USABLE))
+def test_pymoos_own_constructors_unpack_operators_where_the_table_says(row, make, make_problem, arguments):
+    need_package(row)
+    n_obj = least_objectives(row)
+    problem, kwargs = make_problem(n_obj), arguments(row, n_obj)
+    cls = getattr(importlib.import_module(row.module), row.name)
+    operators = make(problem)
+    if row.needs == "ref_dirs":
+        kwargs["ref_dirs"] = reference_directions(n_obj, POP_SIZE)
+    if row.name == "RNSGA3":
+        kwargs["pop_per_ref_point"] = POP_SIZE // 2
+    if row.unpacks:
+        algorithm = cls(**operators, **kwargs)
+        held = [algorithm, algorithm.mating, algorithm.initialization]
+        assert all(any(getattr(one, key, None) is value for one in held) for key, value in operators.items())
+        X = solve(problem, algorithm, n_gen=2, copy_algorithm=False).pop.get("X")
+        assert X.dtype.kind in "ib" and np.array_equal(np.clip(X, problem.xl, problem.xu), X)
+    elif row.name == "CTAEA":
+        # It builds one, which pairs children wrongly or waits for a first population without duplicates.
+        assert row.one_child and operators["crossover"].n_offsprings == 2
+    else:
+        with pytest.raises(TypeError, match="eliminate_duplicates"):
+            cls(**operators, **kwargs)
+    if row.operators:
+        # As the documentation of the operators says.
+        assert make_algorithm(row.name, problem, operators=make(problem), **arguments(row, n_obj)) is not None
 
 
 @pytest.mark.parametrize("row", named(row for row in USABLE if not row.operators))

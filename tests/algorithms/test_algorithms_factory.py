@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from pymoo.algorithms.moo.moead import ParallelMOEAD
@@ -71,16 +73,82 @@ def test_unknown_name(name, near, make_problem):
         ("GA", {}, "GA takes one objective, the problem has 2"),
         ("NSGA2", {"smoothness": "yes"}, "smoothness is 'yes', expected True, False or None"),
         ("NSGA2", {"operators": 5}, "operators is 5, expected a mapping such as path_operators returns"),
-        ("MOEAD", {"n_neighbors": -3}, "n_neighbors is -3, expected a whole number of at least 1"),
+        ("MOEAD", {"n_neighbors": -3}, "n_neighbors is -3, expected a whole number of at least 2"),
         ("MOEAD", {"n_replace": 2.5}, "n_replace is 2.5, expected a whole number of at least 1"),
         ("MOEAD", {"batch_size": 0}, "batch_size is 0, expected a whole number of at least 1"),
         (None, {}, "there is no algorithm None; expected one of"),
+        ("MOEAD", {"n_neighbors": math.inf}, "n_neighbors is inf, expected a whole number of at least 2"),
+        ("MOEAD", {"prob_neighbor_mating": math.nan}, "prob_neighbor_mating is nan, expected a number from 0 to 1 for MOEAD"),
+        ("NSGA2", {"pop_size": True}, "pop_size is True, expected a whole number"),
+        ("NSGA2", {"pop_size": np.True_}, "pop_size is True, expected a whole number"),
+        ("NSGA2", {"pop_size": None}, "pop_size is None, expected a whole number"),
+        ("NSGA2", {"pop_size": 10**400}, "pop_size is a whole number of about 401 digits, expected a whole number of"),
+        ("NSGA2", {"n_offsprings": math.inf}, "n_offsprings is inf, expected a whole number"),
+        ("NSGA2", {"eliminate_duplicates": 3}, "eliminate_duplicates is 3, expected True, False or a Dup"),
+        ("RVEA", {"alpha": math.nan}, "alpha is nan, expected a finite number for RVEA"),
+        ("RVEA", {"adapt_freq": 0}, "adapt_freq is 0, expected a number above 0, at most 1 for RVEA"),
+        ("RVEA", {"ref_dirs": [[math.nan, 1], [1, 0]]}, "ref_dirs holds values that are not finite, expected rows of 2"),
+        ("NSGA3", {"ref_dirs": "many"}, "ref_dirs is 'many', expected rows of 2 finite numbers"),
+        ("NSDE", {"CR": "high"}, "CR is 'high', expected a number from 0 to 1"),
+        ("NSDE", {"CR": True}, "CR is True, expected a number from 0 to 1"),
+        ("NSDE", {"F": (0.8, 0.2)}, r"F is \(0.8, 0.2\), expected a number above 0, at most 2, or a range"),
+        ("NSDE", {"F": math.nan}, "F is nan, expected a number above 0"),
+        ("NSDE", {"F": [0.1, 0.2, 0.3]}, r"F is \[0.1, 0.2, 0.3\], expected a number above 0"),
+        ("NSDE", {"variant": None}, "variant is None, expected such as 'DE/rand/1/bin'"),
+        ("NSDE", {"variant": "DE/rand/0/bin"}, "variant is 'DE/rand/0/bin', expected such as"),
+        ("NSDE", {"de_repair": "bounce"}, "de_repair is 'bounce', expected one of bounce-back"),
+        ("DNSGA2", {"version": "C"}, "version is 'C', expected one of A, B"),
         ("CMOPSO", {}, "CMOPSO moves particles in a continuous space, and grid codings are discrete"),
     ],
 )
 def test_refusals(name, kwargs, message, make_problem):
     with pytest.raises(CapabilityError, match=message):
         make_algorithm(name, make_problem(), **kwargs)
+
+
+@pytest.mark.parametrize(
+    ("name", "kwargs"),
+    [
+        ("NSGA2", {"pop_size": np.int64(10), "n_offsprings": np.int32(4)}),
+        ("MOEAD", {"prob_neighbor_mating": np.float64(0.5), "n_neighbors": np.int8(3)}),
+        ("NSDE", {"F": np.float32(0.5), "CR": np.array(0.5)}),
+        ("NSDE", {"F": np.array([0.1, 0.5])}),
+        ("RVEA", {"adapt_freq": None}),
+    ],
+)
+def test_numbers_may_be_numpys(name, kwargs, make_problem):
+    assert make_algorithm(name, make_problem(), **kwargs) is not None
+
+
+@pytest.mark.parametrize(
+    ("n_obj", "n_points"),
+    [
+        (0, 5),
+        (-1, 5),
+        (2, math.inf),
+        (2, math.nan),
+        (2, 10**400),
+        (101, 200),
+        (2, 10**6),
+        (True, 4),
+        (2, "3"),
+        (None, 3),
+        (2.0, 3),
+    ],
+)
+def test_reference_directions_that_would_not_end_are_refused(n_obj, n_points):
+    with pytest.raises(CapabilityError, match="expected a whole number of at least 1 and at most 100"):
+        reference_directions(n_obj, n_points)
+
+
+def test_the_hint_names_what_suits_the_number_of_objectives(make_problem):
+    with pytest.raises(CapabilityError, match=r"no algorithm 'DE'; expected one of OmniOptimizer, GA, exact for 1 objective$"):
+        make_algorithm("DE", make_problem(1))
+    with pytest.raises(CapabilityError, match=r"no algorithm 'DE'; did you mean 'NSDE'\?"):
+        make_algorithm("DE", make_problem(2))
+    # What is refused on every grid is no hint.
+    with pytest.raises(CapabilityError, match=r"no algorithm 'GDE3PCDX'; did you mean 'GDE3"):
+        make_algorithm("GDE3PCDX", make_problem())
 
 
 def test_what_is_no_problem_is_refused():

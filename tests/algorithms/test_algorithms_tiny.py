@@ -19,7 +19,7 @@ for name, row in CAPABILITIES.items():
             objectives = ("length",) if name == "GA" else ("length", "vulnerability")
             occupied = np.zeros((height, width), dtype=bool)
             problem = GridPathProblem(
-                OccupancyGrid(occupied), (0, 0), (width - 1, height - 1), objectives=objectives, obstacles=obstacles
+                OccupancyGrid(occupied), (0, 0), (width - 1, height - 1), "integer", objectives, obstacles
             )
             given = {"ref_points": [[5.0, 1.0]]} if row.needs == "ref_points" else {}
             try:
@@ -53,7 +53,7 @@ def test_populations_too_small_to_end_are_refused(name, given, least):
     from pymoo_gridpath.algorithms import make_algorithm
     from pymoo_gridpath.errors import CapabilityError
 
-    problem = GridPathProblem(OccupancyGrid(np.zeros((6, 6))), (0, 0), (5, 5))
+    problem = GridPathProblem(OccupancyGrid(np.zeros((6, 6))), (0, 0), (5, 5), "integer")
     with pytest.raises(CapabilityError, match=f"expected a whole number of at least {least} for"):
         make_algorithm(name, problem, pop_size=least - 1, **given)
     assert minimize(problem, make_algorithm(name, problem, pop_size=least, **given), ("n_gen", 2), seed=1).pop is not None

@@ -67,7 +67,7 @@ def test_json_holds_every_path_and_what_made_it(trade_off, tmp_path):
 
 
 def test_json_has_null_where_a_number_is_not_finite(tmp_path):
-    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4))
+    problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "integer")
     path = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]]).to_json(tmp_path / "front.json")
     assert strict(path.read_text())["paths"][0]["clearance"] is None
 
@@ -130,7 +130,9 @@ def test_a_place_that_cannot_be_written_is_an_error_in_words(trade_off, tmp_path
 
 def test_the_table_lines_up_and_shows_the_named_paths(trade_off):
     lines = trade_off.table().splitlines()
-    assert len(lines) == 2 + len(trade_off) and str(trade_off) == trade_off.table()
+    # A heading above the table, and below it how long the shortest path is, with what to try for it if need be.
+    assert len(lines) == 3 + len(trade_off) + bool(trade_off.advice) and str(trade_off) == trade_off.table()
+    lines = lines[: 2 + len(trade_off)]
     ends = [[match.end() for match in re.finditer(r"\S+(?: \S+)*", line)][:7] for line in lines[1:]]
     assert all(row == ends[0] for row in ends[1:])
     short = trade_off.table(max_rows=0)
@@ -146,3 +148,52 @@ def test_sets_can_be_pickled_and_copied(trade_off):
 def test_deciding_does_not_import_pyplot():
     code = "import sys, pymoo_gridpath.decision, pymoo_gridpath.convergence; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_the_table_ends_with_the_shortest_of_all_paths():
+    grid = OccupancyGrid(np.zeros((4, 8)), corner_cutting=True, resolution=0.5)
+    lines = {}
+    for objectives in (("length", "vulnerability"), ("vulnerability", "turn")):
+        problem = GridPathProblem(grid, (0, 0), (7, 3), "integer", objectives)
+        found = TradeOffSet.from_genes(problem, [[0, 1, 1, 1, 0, 0, 0]])
+        lines[objectives[0]] = found.table().splitlines()
+    # Three diagonal steps and four straight ones.
+    said = f"for comparison, the shortest of all paths on this grid has length {4 + 3 * 2**0.5:.3f} ({2 + 1.5 * 2**0.5:.3f} m)"
+    assert lines["length"][-1] == said
+    assert len(lines["vulnerability"]) == 3
+
+
+def test_paths_that_are_much_too_long_are_remarked_on_with_what_to_try():
+    grid = OccupancyGrid(np.zeros((6, 12)))
+    problem = GridPathProblem(grid, (0, 0), (11, 0))
+    straight = [[x, 0] for x in range(12)]
+
+    def genes(cells):
+        row = [y * 12 + x for x, y in cells]
+        return [(row + row[-1:] * problem.n_var)[: problem.n_var]]
+
+    bump = [[0, 0], [0, 1], *([x, 1] for x in range(1, 12)), [11, 0]]
+    found = TradeOffSet.from_genes(problem, genes(bump))
+    assert found.advice == (
+        "the shortest path found is 18% longer than the shortest of all; try path-aware operators, more generations or the "
+        "exact front"
+    )
+    assert found.table().splitlines()[-1] == f"NOTE: {found.advice}"
+    assert TradeOffSet.from_genes(problem, genes(straight)).advice == ""
+    # 2 (sqrt 2 - 1) in 11 is 7.5 %, in 59 it is 1.4 %.
+    wide = GridPathProblem(OccupancyGrid(np.zeros((3, 60))), (0, 0), (59, 0), "integer")
+    assert TradeOffSet.from_genes(wide, [[0, 1, -1, *[0] * 56]]).advice == ""
+    short = GridPathProblem(grid, (0, 0), (11, 0), "integer")
+    advice = TradeOffSet.from_genes(short, [[0, 1, -1, *[0] * 8]]).advice
+    assert "8% longer" in advice and "try the representation 'cells'" in advice
+
+
+def test_nothing_is_remarked_on_where_it_cannot_be_known():
+    grid = OccupancyGrid(np.zeros((6, 12)))
+    rows = [[0, 1, -1, *[0] * 8]]
+    for options in ({"objectives": ("vulnerability", "turn")}, {"obstacles": "limit", "potential_limit": 1.0}):
+        assert TradeOffSet.from_genes(GridPathProblem(grid, (0, 0), (11, 0), "integer", **options), rows).advice == ""
+    walled = np.zeros((6, 12), dtype=bool)
+    walled[:5, 5] = True
+    crossing = TradeOffSet.from_genes(GridPathProblem(OccupancyGrid(walled), (0, 0), (11, 0), "integer"), rows)
+    assert not crossing.feasible and crossing.advice == "" and "NOTE" not in crossing.table()

@@ -47,15 +47,38 @@ def test_a_budget_keeps_paths_that_fit_into_rows_that_are_too_short(n_obj, side,
     np.testing.assert_array_equal(found.F.min(axis=0), whole.F.min(axis=0))
 
 
+def test_what_did_not_do_is_remembered_and_only_more_time_is_another_attempt(monkeypatch):
+    problem = GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), "cells")
+    attempts = []
+
+    def attempt(problem, budget):
+        attempts.append(budget.max_seconds)
+        # Labels rather than seconds, so that what a slow machine does plays no part.
+        return exact_front(problem, Budget(max_labels=None if len(attempts) == 4 else 0))
+
+    monkeypatch.setattr("pymoo_gridpath.problems.grid_path.exact_front", attempt)
+    for given in ({}, {}, {"max_seconds": 2.0}, {"max_seconds": 1}, {"max_seconds": 3.0}, {"max_seconds": 2.5}, {}):
+        with pytest.warns(UserWarning, match="no Pareto front: the search ended early, the budget of 0 labels is used up"):
+            assert problem.pareto_front(**given) is None and problem.pareto_set(**given) is None
+    assert attempts == [2.0, 3.0]
+    with pytest.warns(UserWarning, match="no Pareto front"):
+        assert problem.pareto_front(max_seconds=100.0) is None
+    front = problem.pareto_front(max_seconds=None)
+    assert attempts == [2.0, 3.0, 100.0, None]
+    np.testing.assert_array_equal(front, exact_front(problem).F)
+    assert problem.pareto_front() is front and len(attempts) == 4
+
+
 def test_a_front_that_took_too_long_is_looked_for_again():
     problem = GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), "cells")
     for look in (problem.pareto_front, problem.pareto_set):
-        with pytest.warns(UserWarning, match="time budget of 0 s"):
+        with pytest.warns(UserWarning, match="time budget of 0 s") as caught:
             assert look(max_seconds=0) is None
-    assert len(problem.pareto_front()) == len(problem.pareto_set()) > 1
-    assert problem.pareto_front() is problem.pareto_front()
+        assert caught[0].filename == __file__
+    assert len(problem.pareto_front(max_seconds=60)) == len(problem.pareto_set()) > 1
+    assert problem.pareto_front() is problem.pareto_front(max_seconds=0)
     with pytest.raises(GridPathError, match="max_seconds is -1"):
-        GridPathProblem(random_grid(20, 4), (0, 0), (19, 19)).pareto_front(max_seconds=-1)
+        GridPathProblem(random_grid(20, 4), (0, 0), (19, 19), "integer").pareto_front(max_seconds=-1)
 
 
 TWO, THREE = ("length", "vulnerability"), ("length", "vulnerability", "turn")
@@ -85,7 +108,7 @@ def test_a_budget_ends_the_search_with_the_part_found(objectives, budget):
     if len(found.F):
         # Every path is legal, and none claims more than the front holds.
         assert (problem.decode(found.X).interfering_cells == 0).all()
-        front = problem.pareto_front()
+        front = problem.pareto_front(max_seconds=60)
         assert all((front <= f).all(axis=1).any() for f in found.F)
 
 
@@ -123,10 +146,10 @@ def test_what_watches_ends_the_search_and_is_not_in_the_result():
 
 
 def test_a_pareto_front_that_takes_too_long_is_none_and_says_so():
-    problem = GridPathProblem(random_grid(32, 6), (0, 0), (31, 31))
+    problem = GridPathProblem(random_grid(32, 6), (0, 0), (31, 31), "integer")
     with pytest.warns(UserWarning, match="no Pareto front: the search ended early, the time budget of 0 s is used up"):
         assert problem.pareto_front(max_seconds=0.0) is None
-    assert len(problem.pareto_front()) > 5
+    assert len(problem.pareto_front(max_seconds=60)) > 5
 
 
 def test_memory_of_the_search_for_two_objectives_is_at_most_48_bytes_a_label():

@@ -66,7 +66,9 @@ def test_the_front_does_not_depend_on_the_unit_of_a_cost(scale):
         grid = random_grid(7, seed)
         whole = random_state.integers(0, 10, size=(2, 7, 7))
         plain, scaled = (
-            GridPathProblem(grid, (0, 0), (6, 6), "cells", [Cost("a", costs[0]), Cost("b", costs[1])]).pareto_front()
+            GridPathProblem(grid, (0, 0), (6, 6), "cells", [Cost("a", costs[0]), Cost("b", costs[1])]).pareto_front(
+                max_seconds=60
+            )
             for costs in (whole, whole * scale)
         )
         np.testing.assert_allclose(scaled / scale, plain, rtol=1e-12)
@@ -76,7 +78,7 @@ def test_a_single_dear_cell_keeps_its_point():
     field = np.zeros((3, 3))
     field[1, 1] = 1e7
     grid = OccupancyGrid(np.zeros((3, 3)), corner_cutting=True)
-    front = GridPathProblem(grid, (0, 0), (2, 2), "cells", ["length", Cost("risk", field)]).pareto_front()
+    front = GridPathProblem(grid, (0, 0), (2, 2), "cells", ["length", Cost("risk", field)]).pareto_front(max_seconds=60)
     np.testing.assert_allclose(front, [[2 * 2**0.5, 1e7], [2 + 2**0.5, 0.0]])
 
 
@@ -86,7 +88,7 @@ def test_decimal_costs_make_no_twins():
     occupied = np.zeros((4, 5))
     occupied[1:3, 1:4] = 1
     problem = GridPathProblem(OccupancyGrid(occupied), (0, 1), (4, 1), "cells", ["length", Cost("toll", field)])
-    np.testing.assert_array_equal(problem.pareto_front(), [[6.0, 0.3]])
+    np.testing.assert_array_equal(problem.pareto_front(max_seconds=60), [[6.0, 0.3]])
 
 
 def test_costs_far_apart_keep_the_cheap_part_of_the_front():
@@ -96,9 +98,9 @@ def test_costs_far_apart_keep_the_cheap_part_of_the_front():
         GridPathProblem(OccupancyGrid(cells, corner_cutting=True), (0, 0), (19, 19), "cells", ["length", Cost("toll", field)])
         for cells, field in ((np.zeros((20, 20)), np.where(occupied, 1e20, toll)), (occupied, toll))
     )
-    front = dear.pareto_front()
+    front = dear.pareto_front(max_seconds=60)
     cheap = front[:, 1] < 1e19
-    np.testing.assert_allclose(front[cheap], walled.pareto_front(), rtol=1e-12)
+    np.testing.assert_allclose(front[cheap], walled.pareto_front(max_seconds=60), rtol=1e-12)
     assert not cheap.all() and cheap.sum() > 3
 
 
@@ -152,8 +154,8 @@ def test_a_third_objective_equal_to_the_second_changes_nothing(seed):
     values = [np.zeros(grid.shape), random_state.integers(0, 4, size=grid.shape), random_state.random(grid.shape)][seed % 3]
     cost, again, goal = Cost("cost", values), Cost("again", values), (size - 1, size - 1)
     for first in ("length", Cost("other", random_state.integers(0, 9, size=grid.shape))):
-        two = GridPathProblem(grid, (0, 0), goal, "cells", [first, cost]).pareto_front()
-        three = GridPathProblem(grid, (0, 0), goal, "cells", [first, cost, again]).pareto_front()
+        two = GridPathProblem(grid, (0, 0), goal, "cells", [first, cost]).pareto_front(max_seconds=60)
+        three = GridPathProblem(grid, (0, 0), goal, "cells", [first, cost, again]).pareto_front(max_seconds=60)
         np.testing.assert_allclose(two, three[:, :2], rtol=1e-12)
 
 
@@ -163,4 +165,4 @@ def test_the_default_room_of_cells_holds_the_front_of_a_cost_of_ones_own():
     field[::4] = field[2::4] = 0
     field[1::4, -1] = field[3::4, 0] = 0
     problem = GridPathProblem(OccupancyGrid(np.zeros((12, 12))), (0, 0), (11, 11), "cells", ["length", Cost("wet", field)])
-    assert problem.pareto_front()[-1, 0] > 50
+    assert problem.pareto_front(max_seconds=60)[-1, 0] > 50

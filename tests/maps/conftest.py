@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.errors import MapError, visible
 
 SHARED_DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 
@@ -41,7 +41,7 @@ def refused():
         with pytest.raises(MapError) as caught:
             call(path, **options)
         error, message = caught.value, str(caught.value)
-        where = str(path) if line is None else f"{path}, line {line}"
+        where = visible(path) if line is None else f"{visible(path)}, line {line}"
         assert message.startswith(f"{where}: ") and error.line == line
         assert "\n" not in message and "expected" in message
         for word in words:

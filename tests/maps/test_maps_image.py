@@ -2,9 +2,11 @@ from __future__ import annotations
 
 import struct
 
+import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, TiffImagePlugin
 
+from pymoo_gridpath.errors import MapWarning
 from pymoo_gridpath.maps import _files, read_image
 
 
@@ -69,6 +71,56 @@ def test_a_transparent_colour(write, png, unknown, clear):
     assert cells(read_image(write("b.png", png(3, 1, 16, 0, rows, key)), unknown=unknown)) == [[clear, 1, 0]]
     chunks = [(b"PLTE", bytes([0, 0, 0, 255, 255, 255])), (b"tRNS", bytes([0]))]
     assert cells(read_image(write("c.png", png(2, 1, 8, 3, [bytes([0, 1])], *chunks)), unknown=unknown)) == [[clear, 0]]
+
+
+def test_what_shows_nothing_is_unknown(write, png):
+    rows = [bytes([0, 0, 255, 127]), bytes([0, 255, 255, 0])]
+    for choice in ("free", "occupied"):
+        grid = read_image(write("la.png", png(2, 2, 8, 4, rows)), unknown=choice)
+        assert grid.unknown.tolist() == [[False, True], [True, False]]
+    assert not read_image(write("l.png", png(2, 1, 8, 0, [bytes([0, 205])]))).unknown.any()
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_nodata_of_gdal_is_unknown(tmp_path, dtype):
+    path = tmp_path / "m.tif"
+    tags = TiffImagePlugin.ImageFileDirectory_v2()
+    tags[42113] = "7"
+    white = np.iinfo(dtype).max
+    Image.fromarray(np.array([[0, 7, white]], dtype)).save(path, tiffinfo=tags)
+    for unknown, clear in (("free", 0), ("occupied", 1)):
+        grid = read_image(path, unknown=unknown)
+        assert cells(grid) == [[1, clear, 0]] and cells(grid.replace(occupied=grid.unknown)) == [[0, 1, 0]]
+    # A value that no pixel can have changes nothing.
+    tags[42113] = "-9999"
+    Image.fromarray(np.array([[0, 7, white]], dtype)).save(path, tiffinfo=tags)
+    assert cells(read_image(path)) == [[1, 1, 0]] and not read_image(path).unknown.any()
+
+
+YAML = "image: {}\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("room.yaml", YAML.format("room.pgm"), True),
+        ("other.yml", YAML.format("'./room.pgm'"), True),
+        ("room.yaml", "image:\troom.pgm\n", True),
+        ("room.yaml", YAML.format("hall.pgm"), False),
+        ("room.yaml", YAML.format("no.pgm"), False),
+        ("room.yaml", "image: [\n", False),
+        ("room.yaml", "image: room.pgm\n# " + "x" * 70_000, False),
+        ("room.txt", YAML.format("room.pgm"), False),
+    ],
+)
+def test_the_yaml_file_of_a_map_beside_its_image_is_named(write, recwarn, name, text, said):
+    path = write("room.pgm", b"P5\n2 1\n255\n\0\xff")
+    write("hall.pgm", b"P5\n2 1\n255\n\0\xff")
+    write(name, text)
+    read_image(path)
+    messages = [str(item.message) for item in recwarn if item.category is MapWarning]
+    assert len(messages) == said
+    assert all(message.startswith(f"{path}: {name} ") for message in messages)
 
 
 @pytest.mark.parametrize("name", ["m.bmp", "m.gif", "m.tif", "m.webp", "m.jpg"])

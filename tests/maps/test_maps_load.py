@@ -52,6 +52,18 @@ def test_common_options(write, kind):
         assert (grid.resolution, grid.origin) == (0.5, (1.0, 2.0, 0.0))
 
 
+@pytest.mark.parametrize("kind", ["yaml", "pgm"])
+def test_an_option_without_effect_is_said(write, kind, recwarn):
+    write("m.pgm", PGM)
+    path = write(f"m.{kind}", KINDS[kind])
+    load_map(path, unknown=None)
+    before = len(recwarn)
+    load_map(path, unknown="occupied")
+    (said,) = [item for item in recwarn.list[before:] if "effect" in str(item.message)]
+    assert said.filename == __file__
+    assert str(said.message) == f"{path}: the map has no unknown cell, so that the option 'unknown' has no effect"
+
+
 @pytest.mark.parametrize(
     ("kind", "options"),
     [

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pymoo.optimize import minimize
 
+from pymoo_gridpath import GridPathProblem
+from pymoo_gridpath.algorithms import make_algorithm
+from pymoo_gridpath.decision import TradeOffSet
 from pymoo_gridpath.maps import load_map, read_movingai, read_scen
 
 
@@ -66,3 +70,12 @@ def test_ros_maps(shared_data, name, width, height, origin, occupied_thresh, fre
     assert (strict.width, strict.height, strict.resolution, strict.origin) == (width, height, 0.05, origin)
     assert np.array_equal(strict.occupied, ~light) and np.array_equal(lax.occupied, dark)
     assert 0 < lax.n_occupied < 0.2 * lax.occupied.size
+
+
+def test_the_default_coding_finds_the_shortest_path_through_the_depot(shared_data):
+    grid = load_map(shared_data / "ros" / "depot.yaml").inflate(0.3)
+    problem = GridPathProblem(grid, (50, 62), (560, 260))
+    result = minimize(problem, make_algorithm("NSGA-II", problem, pop_size=40), ("n_gen", 3), seed=1)
+    found = TradeOffSet.from_results(result)
+    assert found.shortest.length == pytest.approx(592.0, abs=0.05)
+    assert found.shortest.length == pytest.approx(found.least_length) and found.advice == ""

@@ -259,7 +259,7 @@ def test_array_mating_returns_new_unique_children_and_changes_nothing():
 
 def test_array_mating_gives_up_where_nothing_new_can_be_made():
     grid = OccupancyGrid(np.zeros((1, 4)))  # a single row: every gene is 0
-    p = GridPathProblem(grid, (0, 0), (3, 0))
+    p = GridPathProblem(grid, (0, 0), (3, 0), "integer")
     pop = Population.new("X", np.zeros((4, 3), dtype=int))
     pop.set(
         "F",

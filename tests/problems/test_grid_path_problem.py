@@ -115,12 +115,12 @@ class Own(Objective):
 @pytest.mark.parametrize(
     ("field", "what"),
     [
-        (np.zeros((6, 8)), r"float64 of shape \(6, 8\)"),
-        (np.zeros(48), r"float64 of shape \(48,\)"),
-        (3.0, r"float64 of shape \(\)"),
-        (np.zeros((8, 6), dtype=complex), "complex128"),
-        ([["a"] * 6] * 8, "<U1"),
-        ([[1], [1, 2]], "list"),
+        (np.zeros((6, 8)), r"an array of float64 of shape \(6, 8\)"),
+        (np.zeros(48), r"an array of float64 of shape \(48,\)"),
+        (3.0, "3.0"),
+        (np.zeros((8, 6), dtype=complex), "an array of complex128"),
+        ([["a"] * 6] * 8, "an array of <U1"),
+        ([[1], [1, 2]], r"\[\[1\], \[1, 2\]\]"),
     ],
 )
 def test_fields_of_the_wrong_kind_are_refused(representation, field, what):
@@ -162,7 +162,7 @@ def test_objectives_of_ones_own():
 )
 def test_the_same_paths_have_the_same_values_in_cells(options, corner_cutting):
     grid = GRID if corner_cutting else OccupancyGrid(np.random.default_rng(2).random((12, 12)) < 0.15, corner_cutting=False)
-    integer = GridPathProblem(grid, START, GOAL, objectives=("length", "vulnerability", "turn", Cells()), **options)
+    integer = GridPathProblem(grid, START, GOAL, "integer", ("length", "vulnerability", "turn", Cells()), **options)
     coding = CellSequence(grid, START, GOAL, max_cells=grid.occupied.size)
     cells = GridPathProblem(grid, START, GOAL, coding, integer.objectives, **options)
     X = genes(integer)
@@ -209,11 +209,14 @@ def test_rows_longer_than_a_part_are_evaluated(monkeypatch):
         ({"objectives": ()}, "expected one or more"),
         ({"objectives": ("length", "length")}, "each once"),
         ({"objectives": (3,)}, "neither a name nor an Objective"),
-        ({"objectives": None}, "objectives are None, expected names such as 'length', or Objective objects"),
+        ({"objectives": None}, "objectives is None, expected names such as 'length', or Objective objects"),
         ({"representation": "real"}, "no representation 'real'"),
         ({"representation": 3}, "representation is 3, expected a name such as 'integer', or a Representation"),
-        ({"representation": np.zeros(2)}, r"representation is array\(.*\), expected a name such as 'integer'"),
-        ({"grid": "office"}, "grid is of the class str, expected an OccupancyGrid"),
+        (
+            {"representation": np.zeros(2)},
+            r"representation is an array of float64 of shape \(2,\), expected a name such as 'integer'",
+        ),
+        ({"grid": "office"}, "grid is 'office', expected an OccupancyGrid; load_map reads one"),
         ({"obstacles": "wall"}, "obstacles is 'wall', expected one of penalty, constraint, limit"),
         ({"penalty": -1}, "penalty is -1, expected a positive number"),
         ({"penalty": "high"}, "penalty is 'high', expected a positive number"),

@@ -144,7 +144,9 @@ def test_refusals_say_why():
     with pytest.raises(GridPathError, match="advance along none; expected 'auto'"):
         make_representation("cells", grid, (0, 0), (1, 0), "x")
     coding = make_representation("cells", grid, (0, 0), (1, 0))
-    with pytest.raises(GridPathError, match=r"a field has shape \(4, 1\), expected \(1, 4\)"):
+    with pytest.raises(
+        GridPathError, match=r"field is an array of float64 of shape \(4, 1\), expected numbers of shape \(1, 4\)"
+    ):
         coding.prepare(np.zeros((4, 1)))
     with pytest.raises(GridPathError, match="expected 2 genes of the cells representation"):
         coding.decode(np.zeros((1, 5)))

@@ -6,7 +6,6 @@ import contextlib
 import dataclasses
 import errno
 import os
-import pty
 import random
 import shutil
 import signal
@@ -275,6 +274,7 @@ def read_all(master: int) -> str:
 
 
 def test_progress_is_shown_on_a_terminal(plan, tmp_path):
+    pty = pytest.importorskip("pty", reason="there are no pseudo-terminals on Windows")
     master, slave = pty.openpty()
     with os.fdopen(slave, "w") as terminal:
         run_study(make_plan(1), tmp_path, stream=terminal)
@@ -299,6 +299,7 @@ def test_the_rest_takes_what_runs_of_its_kind_took():
 
 
 def test_progress_counts_failures(tmp_path):
+    pty = pytest.importorskip("pty", reason="there are no pseudo-terminals on Windows")
     master, slave = pty.openpty()
     with os.fdopen(slave, "w") as terminal:
         progress = StudyProgress(["a", "a", "b"], terminal)

@@ -8,8 +8,10 @@ import re
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
+from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.progress import COMPILING
@@ -143,6 +145,38 @@ def test_estimate_is_near_the_truth():
     assert (found.n_measured, found.n_kinds, found.open_ended) == (3, 3, False)
     # Loosely, since the computer may be busy with other things at either time.
     assert took / 5 < found.seconds < took * 5
+
+
+def test_estimate_does_not_count_compiling(monkeypatch):
+    """Every generation takes a second, and ten minutes of compiling besides the first time that it is the second of a run."""
+    event = pytest.importorskip("numba").core.event
+    now, compiled_yet = [0.0], []
+    monkeypatch.setattr("time.perf_counter", lambda: now[0])
+    next_generation = Algorithm.next
+
+    def slow(algorithm):
+        second = algorithm.n_iter == 2
+        next_generation(algorithm)
+        now[0] += 1.0
+        if second and not compiled_yet:
+            compiled_yet.append(True)
+            event.start_event("numba:compile", {"dispatcher": SimpleNamespace(py_func=None)})
+            now[0] += 600.0
+            event.end_event("numba:compile", {})
+
+    monkeypatch.setattr(Algorithm, "next", slow)
+    plan = Study.from_dict(
+        {
+            "problems": [{"random": {"size": 8, "p0": 0.1}}],
+            "algorithms": [{"algorithm": "NSGA2", "pop_size": 10}],
+            "seeds": 3,
+            "budget": {"generations": 40},
+            "reference": {"max_labels": 1},
+        }
+    ).plan()
+    runs = [run for run in plan.runs if run.algorithm is not None]
+    assert estimate(plan, runs, max_seconds=5.0).seconds == 3 * 40
+    assert compiled_yet
 
 
 def test_estimate_keeps_to_its_time_and_says_what_is_open():

@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.files import write_whole
 
@@ -59,7 +60,13 @@ def write_report(
     from pymoo_gridpath.study.report.results import collect
     from pymoo_gridpath.study.store import Store
 
-    forms = check_formats(formats)
+    forms = check_formats(checks.names("formats", formats))
+    checks.file_path("folder", folder)
+    if output is not None:
+        checks.file_path("output", output)
+    if target is not None:
+        target = checks.number("target", target, 0.0, 1.0, above=True, expected="a share above 0, at most 1")
+    times = checks.flag("times", times)
     results = collect(Store(folder), target)
     directory = Path(folder) / "report" if output is None else Path(output)
     figures = directory / _FIGURES

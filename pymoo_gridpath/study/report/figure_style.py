@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridPathError, nearest
 from pymoo_gridpath.plotting.style import STYLE
 
@@ -84,7 +85,7 @@ def check_formats(formats: str | Sequence[str]) -> list[str]:
     formats = [formats] if isinstance(formats, str) else list(formats)
     for name in formats:
         if name not in _METADATA:
-            raise GridPathError(f"there is no figure format {name!r}, {nearest(name, _METADATA)}")
+            raise GridPathError(f"there is no figure format {shown(name)}, {nearest(name, _METADATA)}")
     return formats
 
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
-
-from pymoo.operators.crossover.dex import DE_REPAIRS
 
 from pymoo_gridpath.algorithms import CAPABILITIES, _arguments
 from pymoo_gridpath.algorithms.factory import _class_of
@@ -36,13 +33,6 @@ _OBJECTS = (
     "automated_dm",
     "ps",
 )
-
-# Values that mean something to pymoo; it takes others as well, and heeds them not at all or in the midst of a run.
-_NAMES = {"normalization": ("front", "ever", "no"), "version": ("A", "B"), "de_repair": tuple(DE_REPAIRS)}
-_SHARES = ("prob_neighbor_mating", "CR", "perc_detect_change", "perc_diversity", "mu")
-_LEAST = {"n_neighbors": 2, "batch_size": 1, "pop_per_ref_point": 1, "n_offsprings": 1}
-_BASES_OF_VARIANTS = ("rand", "best", "current-to-best", "current-to-rand", "ranked")
-_CROSSOVERS_OF_VARIANTS = ("bin", "exp")
 
 
 def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
@@ -82,11 +72,11 @@ def accepted_parameters(algorithm: str) -> dict[str, Any]:
 
 def _check(key: str, value: Any, default: Any, where: Where) -> None:
     """Refuse a value that means nothing, or is of another type than the default."""
-    if key in _NAMES:
-        values.choice(value, _NAMES[key], where)
-    elif key in _LEAST:
-        values.whole(value, where, _LEAST[key], MAX_POP_SIZE)
-    elif key in _SHARES or key == "adapt_freq":
+    if key in _arguments.NAMES:
+        values.choice(value, _arguments.NAMES[key], where)
+    elif key in _arguments.LEAST:
+        values.whole(value, where, _arguments.LEAST[key], MAX_POP_SIZE)
+    elif key in _arguments.SHARES or key == "adapt_freq":
         values.real(value, where, 0.0, 1.0, open_below=key == "adapt_freq")
     elif key in _OWN_CHECKS:
         _OWN_CHECKS[key](value, where)
@@ -99,10 +89,11 @@ def _check(key: str, value: Any, default: Any, where: Where) -> None:
 
 
 def _check_variant(value: Any, where: Where) -> None:
-    match = re.fullmatch(r"DE/(.+)/([1-9]\d?)/(.+)", value) if isinstance(value, str) else None
-    if match is None or match[1] not in _BASES_OF_VARIANTS or match[3] not in _CROSSOVERS_OF_VARIANTS:
-        number = match[2] if match else "1"
-        values.choice(value, [f"DE/{a}/{number}/{b}" for a in _BASES_OF_VARIANTS for b in _CROSSOVERS_OF_VARIANTS], where)
+    bases, crossovers = _arguments.BASES_OF_VARIANTS, _arguments.CROSSOVERS_OF_VARIANTS
+    match = _arguments.VARIANT.fullmatch(value) if isinstance(value, str) else None
+    if match is None or match["base"] not in bases or match["crossover"] not in crossovers:
+        number = match["n_diffs"] if match else "1"
+        values.choice(value, [f"DE/{a}/{number}/{b}" for a in bases for b in crossovers], where)
 
 
 def _check_scale(value: Any, where: Where) -> None:

@@ -11,6 +11,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps import load_map, map_format, read_scen, read_text_header, shipped_maps
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
+from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.build import build_grid, pack_grid
 from pymoo_gridpath.study.plan import PlannedProblem, run_key
 from pymoo_gridpath.study.specification import canonical
@@ -152,8 +153,7 @@ def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: Occ
 def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
     """Return the canonical form of a problem."""
     corner_cutting = item.grid.get("random", item.grid)["corner_cutting"]
-    # As on the command line.
-    default = "integer" if corner_cutting or spec.axis != "auto" else "cells"
+    default = default_representation(corner_cutting, spec.axis)  # pyright: ignore[reportArgumentType]
     return canonical.settle(
         {
             "grid": item.grid,

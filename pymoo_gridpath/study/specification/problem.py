@@ -92,8 +92,7 @@ class ProblemSpec:
     resolution, unknown, threshold, corner_cutting : optional
         How the map is read, see `pymoo_gridpath.maps.load_map`.
     objectives, representation, obstacles, penalty, potential_limit, axis : optional
-        See `GridPathProblem`. ``representation`` is by default "integer" where corners may be cut or ``axis`` is given, and
-        "cells" elsewhere, as on the command line.
+        See `GridPathProblem`.
 
     Raises
     ------

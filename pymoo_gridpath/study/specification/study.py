@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec, set_fields, to_table
@@ -86,7 +87,7 @@ class Study:
             budget=_budget(self.budget),
             reference=_reference(self.reference),
             target=values.real(self.target, ("target",), 0.0, 1.0, open_below=True),
-            folder=Path(self.folder),
+            folder=Path(checks.file_path("folder", self.folder, StudyError)),
         )
 
     def plan(self) -> Plan:
@@ -104,10 +105,12 @@ class Study:
 
     def error(self, message: str, where: Where) -> StudyError:
         """Return an error that says where in the study, or in its file, something is wrong."""
+        message, where = checks.text("message", message), _as_place(where)
         return StudyError(message, where) if self.source is None else self.source.error(message, where)
 
     def line(self, where: Where) -> str:
         """Return where something stands, in words for a message: its line in the file, or its number in the list."""
+        where = _as_place(where, 2)
         line = self.source.line(where) if self.source is not None else None
         return f"{where[0]}[{where[1]}]" if line is None else f"line {line}"
 
@@ -121,6 +124,7 @@ class Study:
             If a key is unknown or missing, or as in the constructor.
         """
         known = [item.name for item in dataclasses.fields(cls) if item.name not in ("folder", "source")]
+        data = values.table(data, ())
         values.check_keys(data, known, (), "the study")
         for key in ("problems", "algorithms", "seeds", "budget"):
             if key not in data:
@@ -131,6 +135,15 @@ class Study:
     def to_dict(self) -> dict[str, Any]:
         """Return the tables of a study file, without what is at its default; the inverse of `from_dict`."""
         return to_table(self)
+
+
+def _as_place(where: Where, least: int = 0) -> Where:
+    """Return a place in a study if it is one, of at least so many parts."""
+    expected = "a place in a study such as ('problems', 0)"
+    place = tuple(checks.items("where", where, expected))
+    if len(place) < least or not all(isinstance(part, str | int) for part in place):
+        raise GridPathError(f"where is {checks.shown(where)}, expected {expected}")
+    return place
 
 
 def _specs(cls: Any, items: Any, key: str) -> tuple[Any, ...]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.study.specification.toml_lines import KeyLines
@@ -65,7 +66,8 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         If the file cannot be read, is no TOML, or describes no study; the message names the line. What takes reading the maps
         is checked by `Study.plan`.
     """
-    source = Source(os.fspath(path), _read(path))
+    path = checks.file_path("path", path, StudyError)
+    source = Source(path, _read(path))
     if many := _MANY_PARTS.search(source.text):
         line = source.text.count("\n", 0, many.start()) + 1
         raise StudyError("a key has 50 parts or more, expected a study", path=source.path, line=line)

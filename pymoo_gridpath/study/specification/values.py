@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import StudyError, nearest
 
 # Places in a study: keys and indices.
@@ -29,8 +32,7 @@ def key_of(where: Where) -> str:
 
 def show(value: object) -> str:
     """Return a value as the message of an error shows it: as TOML writes it, and not too long."""
-    text = str(value).lower() if isinstance(value, bool) else repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    return str(value).lower() if isinstance(value, bool) else shown(value)
 
 
 def check_keys(table: Mapping[str, Any], known: Iterable[str], where: Where, owner: str) -> None:
@@ -40,7 +42,7 @@ def check_keys(table: Mapping[str, Any], known: Iterable[str], where: Where, own
         if key not in known:
             if where:
                 refuse_key_of_study(key, (*where, key), owner)
-            raise StudyError(f"{owner} has no key {show(key)}; {nearest(key, known)}", (*where, key))
+            raise StudyError(f"{owner} has no key {show(key)}; {nearest(shown(key), known)}", (*where, key))
 
 
 def refuse_key_of_study(key: str, where: Where, owner: str) -> None:
@@ -65,18 +67,19 @@ def text(value: object, where: Where) -> str:
 
 def flag(value: object, where: Where) -> bool:
     """Return true or false."""
-    if not isinstance(value, bool):
+    found = _plain(value)
+    if not isinstance(found, bool):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected true or false", where)
-    return value
+    return found
 
 
 def choice(value: object, known: Iterable[str], where: Where) -> str:
     """Return one of some names."""
     known = list(known)
-    if value not in known:
+    if not isinstance(value, str) or value not in known:
         hint = nearest(value, known) if isinstance(value, str) else f"expected one of {', '.join(known)}"
         raise StudyError(f"{key_of(where)} is {show(value)}; {hint}", where)
-    return str(value)
+    return value
 
 
 def whole(value: object, where: Where, least: int = 0, most: int | None = None) -> int:
@@ -94,7 +97,7 @@ def real(value: object, where: Where, least: float = 0.0, most: float | None = N
     within = f"above {least:g}" if open_below else f"{least:g} or more"
     if most is not None:
         within = f"above {least:g}, at most {most:g}" if open_below else f"{least:g} to {most:g}"
-    fits = isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number)
+    fits = isinstance(number, int | float) and not isinstance(number, bool) and _is_finite(number)
     if not fits or number < least or (open_below and number == least) or (most is not None and number > most):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected a number, {within}", where)
     return float(number)
@@ -103,13 +106,15 @@ def real(value: object, where: Where, least: float = 0.0, most: float | None = N
 def number(value: object, where: Where) -> int | float:
     """Return a finite number."""
     found = _plain(value)
-    if not isinstance(found, int | float) or isinstance(found, bool) or not math.isfinite(found):
+    if not isinstance(found, int | float) or isinstance(found, bool) or not _is_finite(found):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected a number", where)
     return found
 
 
 def cell(value: object, where: Where) -> tuple[int, int]:
     """Return a cell (x, y)."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
     if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 2:
         raise StudyError(f"{key_of(where)} is {show(value)}, expected a cell of two whole numbers, such as [12, 40]", where)
     x, y = (_plain(part) for part in value)
@@ -127,7 +132,7 @@ def seeds(value: object, where: Where) -> tuple[int, ...]:
             raise StudyError(f"{key_of(where)} has no count, expected such as {{ first = 100, count = 11 }}", where)
         first = whole(given.get("first", 1), (*where, "first"), 0, MAX_SEED - MAX_SEEDS)
         return tuple(range(first, first + whole(given["count"], (*where, "count"), 1, MAX_SEEDS)))
-    if isinstance(value, Iterable) and not isinstance(value, str):
+    if isinstance(value, Collection) and not isinstance(value, str | bytes):
         return each_once(value, where, MAX_SEED)
     number = _plain(value)
     if isinstance(number, int) and not isinstance(number, bool) and 1 <= number <= MAX_SEEDS:
@@ -146,6 +151,8 @@ def each_once(numbers: Iterable[Any], where: Where, most: int | None = None) -> 
         if number in found:
             raise StudyError(f"{key_of(where)} lists {number} twice, expected each once", where)
         found[number] = None
+        if len(found) > MAX_SEEDS:
+            break
     if not 1 <= len(found) <= MAX_SEEDS:
         raise StudyError(f"{key_of(where)} has {len(found)} entries, expected 1 to {MAX_SEEDS}", where)
     return tuple(found)
@@ -156,7 +163,7 @@ def plain_json(value: object, where: Where) -> Any:
     value = _plain(value)
     if isinstance(value, Mapping):
         return {str(key): plain_json(item, where) for key, item in value.items()}
-    if isinstance(value, Iterable) and not isinstance(value, str):
+    if isinstance(value, Collection) and not isinstance(value, str | bytes):
         return [plain_json(item, where) for item in value]
     if isinstance(value, float) and math.isfinite(value):
         return int(value) if value.is_integer() else value
@@ -168,6 +175,14 @@ def plain_json(value: object, where: Where) -> Any:
 def like(default: object, value: Any) -> Any:
     """Return a number as the kind of number that the default is, so that 4 and 4.0 are the same."""
     return float(value) if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _is_finite(number: float) -> bool:
+    """Whether a number is neither infinite nor NaN, nor a whole number beyond what floats hold."""
+    try:
+        return math.isfinite(number)
+    except OverflowError:
+        return False
 
 
 def _plain(value: object) -> Any:

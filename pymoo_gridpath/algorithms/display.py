@@ -1,0 +1,81 @@
+"""What a run on a path problem prints with ``verbose=True``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import moocore
+import numpy as np
+from pymoo.util.display.column import Column
+from pymoo.util.display.output import Output
+
+from pymoo_gridpath import checks
+
+
+class PathOutput(Output):
+    """A line a generation: evaluations, legal paths of the population, the least length among them, distance to the front.
+
+    `make_algorithm` and `ExactFront` give each algorithm one of its own; ``output=`` takes another. The columns:
+
+    - ``n_gen``, ``n_eval``: generations and evaluations so far.
+    - ``legal``: members of the population that are legal paths.
+    - ``length``: the least length of these, where length is an objective; a dash where there is none.
+    - ``igd+``: the mean distance by which the points of the exact front are missed, IGD+, in objectives that are scaled by the
+      range of the front (those without a range count in their own unit); 0 for a run that has them all. It is shown where
+      ``problem.pareto_front()`` knows the front, or finds it in the time that it takes by default.
+
+    Parameters
+    ----------
+    distance : bool, default True
+        Whether to show the distance to the front.
+
+    Raises
+    ------
+    GridPathError
+        If distance is no truth value.
+
+    References
+    ----------
+    H. Ishibuchi, H. Masuda, Y. Tanigaki and Y. Nojima, "Modified distance calculation in generational distance and inverted
+    generational distance", EMO 2015.
+    """
+
+    def __init__(self, distance: bool = True):
+        super().__init__()
+        self.distance = checks.flag("distance", distance)
+        self.legal = Column("legal", width=6)
+        self.length = Column("length", width=11)
+        self.igd_plus = Column("igd+", width=9)
+
+    def initialize(self, algorithm: Any) -> None:
+        problem = algorithm.problem
+        self.columns.append(self.legal)
+        if "length" in problem.objective_names:
+            self.columns.append(self.length)
+        front = problem.pareto_front() if self.distance else None
+        if front is not None and len(front):
+            span = np.ptp(front, axis=0)
+            self._scale = np.where(span > 0, span, 1.0)
+            self._front = front / self._scale
+            self.columns.append(self.igd_plus)
+
+    def update(self, algorithm: Any) -> None:
+        super().update(algorithm)
+        F = _legal(algorithm)
+        self.legal.set(len(F))
+        if self.length in self.columns:
+            least = F[:, algorithm.problem.objective_names.index("length")].min(initial=np.inf)
+            self.length.set(f"{least:.3f}" if len(F) else None)
+        if self.igd_plus in self.columns:
+            self.igd_plus.set(f"{moocore.igd_plus(F / self._scale, ref=self._front):.6f}" if len(F) else None)
+
+
+def _legal(algorithm: Any) -> np.ndarray:
+    """Return the objectives of the legal members of a population, shape (N, n_obj); they carry no penalty."""
+    pop, problem = algorithm.pop, algorithm.problem
+    if not len(pop):
+        return np.empty((0, problem.n_obj))
+    legal = np.asarray(pop.get("interfering_cells")) == 0
+    if problem.has_constraints():
+        legal &= pop.get("CV")[:, 0] <= 0
+    return pop.get("F")[legal]
