@@ -227,3 +227,9 @@ def test_an_end_that_is_walled_in_has_no_hint():
     with pytest.raises(GridError, match=r"goal \(1, 0\) .*; there is no free cell that a path joins with \(0, 0\)"):
         grid.check_query((0, 0), (1, 0))
     assert grid.nearest_free((1, 0), joined_with=(2, 0)) == (2, 1)
+
+
+def test_the_move_graph_has_indices_that_every_scipy_takes():
+    """csgraph takes 32 bits alone before scipy 1.15."""
+    graph = OccupancyGrid(np.zeros((3, 4))).move_graph()
+    assert (graph.indices.dtype, graph.indptr.dtype) == (np.int32, np.int32)

@@ -148,6 +148,8 @@ def map_format(path: str | os.PathLike[str]) -> str:
     words = head.removeprefix(b"\xef\xbb\xbf").split(maxsplit=2)[:2]
     if words[:1] == [b"type"]:
         return "a MovingAI map"
+    if words[:1] == [b"voxel"] or file.suffix.lower() == ".3dmap":
+        raise MapError(path, "the file is a voxel map in three dimensions (.3dmap of MovingAI), expected a map in two")
     if words[:1] == [b"version"]:
         raise MapError(path, "the file is a list of queries, expected a map; read_scen reads queries")
     if re.search(rb"^image[ \t]*:", head, re.MULTILINE):

@@ -6,6 +6,7 @@ import os
 import reprlib
 import sys
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,16 @@ from pymoo_gridpath.grid import OccupancyGrid
 MAX_CELLS = 100_000_000
 """The largest number of cells that a map may have."""
 
+MAX_LINE = 10_000
+"""The largest number of bytes of a line of text that is not a row of cells."""
+
 UNKNOWN_CHOICES = ("occupied", "free")
+
+_BLANKS = b" \t\v\f"
+_IS_BLANK = np.isin(np.arange(256), list(_BLANKS))
+
+BLOCK = 1 << 22
+"""How many letters or values are looked at together, which bounds the memory that this takes."""
 
 _repr = reprlib.Repr()
 _repr.maxlevel, _repr.maxstring = 2, 60
@@ -33,23 +43,45 @@ def require_file(path: str | os.PathLike[str]) -> Path:
     raise MapError(path, f"{found}, expected a map file")
 
 
-def read_string(path: str | os.PathLike[str], limit: int | None = None) -> str:
-    """Return the text of a UTF-8 file of at most ``limit`` bytes, line ends as newlines, or raise MapError."""
+def read_text_bytes(path: str | os.PathLike[str], limit: int | None = None) -> bytes:
+    """Return a text file without a byte order mark and with line ends as newlines, or raise MapError.
+
+    It stays bytes, because a text of the largest size would not fit into memory as letters; `decode` turns lines into text.
+    """
     file = require_file(path)
     # A text map needs a byte a cell, a line end a row and a short header.
     limit = 2 * MAX_CELLS if limit is None else limit
     try:
         if file.stat().st_size > limit:
-            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {limit} for a text file")
+            raise MapError(path, f"the file has {file.stat().st_size} bytes, expected at most {limit} for a file of this kind")
         data = file.read_bytes()
     except OSError as error:
         raise MapError(path, f"the file cannot be read ({error.strerror}), expected a readable map file") from None
+    data = data.removeprefix(b"\xef\xbb\xbf")
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
+
+
+def read_string(path: str | os.PathLike[str], limit: int) -> str:
+    """Return the text of a UTF-8 file of at most ``limit`` bytes, line ends as newlines, or raise MapError."""
+    return decode(path, read_text_bytes(path, limit))
+
+
+def decode(path: str | os.PathLike[str], data: bytes, line: int = 1) -> str:
+    """Return bytes that begin in a given line as text, or raise MapError."""
     try:
-        text = data.decode("utf-8-sig")
+        return data.decode("utf-8")
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
+        line += data.count(b"\n", 0, error.start)
         raise MapError(path, f"found the byte 0x{data[error.start]:02x}, expected UTF-8 text", line) from None
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def short_line(path: str | os.PathLike[str], data: bytes, start: int, line: int) -> str:
+    """Return the line that begins at ``start``, which is not one of cells and therefore not long, or raise MapError."""
+    end = data.find(b"\n", start)
+    end = len(data) if end < 0 else end
+    if end - start > MAX_LINE:
+        raise MapError(path, f"the line has {end - start} bytes, expected at most {MAX_LINE} where it is not a row", line)
+    return decode(path, data[start:end], line)
 
 
 def warn(path: str | os.PathLike[str], message: str) -> None:
@@ -60,17 +92,29 @@ def warn(path: str | os.PathLike[str], message: str) -> None:
     warnings.warn(MapWarning(path, message), stacklevel=level)
 
 
+def blocks(height: int, width: int) -> Iterator[slice]:
+    """Yield the rows of an array of this size as slices of about `BLOCK` cells each."""
+    step = max(BLOCK // width, 1)
+    return (slice(start, min(start + step, height)) for start in range(0, height, step))
+
+
 def shorten(value: object) -> str:
     """Return a short representation for an error message, however large or nested the value is."""
     return _repr.repr(value)
 
 
+def plain(number: int) -> str:
+    """Return a whole number as text, however large it is."""
+    return str(number) if abs(number) < 10**15 else "over 10^15" if number > 0 else "below -10^15"
+
+
 def check_size(path: str | os.PathLike[str], width: int, height: int, line: int | None = None) -> None:
     """Raise MapError unless the map has at least one cell and at most `MAX_CELLS`."""
+    size = f"{plain(width)} x {plain(height)}"
     if width < 1 or height < 1:
-        raise MapError(path, f"the map is {width} x {height} cells, expected at least one column and one row", line)
+        raise MapError(path, f"the map is {size} cells, expected at least one column and one row", line)
     if width * height > MAX_CELLS:
-        raise MapError(path, f"the map is {width} x {height} cells, expected at most {MAX_CELLS} cells", line)
+        raise MapError(path, f"the map is {size} cells, expected at most {MAX_CELLS} cells", line)
 
 
 def check_unknown(path: str | os.PathLike[str], unknown: str) -> None:
@@ -88,21 +132,73 @@ def make_grid(path: str | os.PathLike[str], occupied: ArrayLike, name: str | Non
 
 
 def parse_rows(
-    path: str | os.PathLike[str], rows: list[str], first_line: int, width: int, free: str, occupied: str
+    path: str | os.PathLike[str], body: bytes, first_line: int, size: tuple[int, int], free: str, occupied: str
 ) -> np.ndarray:
     """Return which cells are occupied, shape (height, width), from rows of letters, the top row first.
 
-    Raises MapError with the line of the first row that has an unknown letter or another width.
+    ``body`` begins with the first row and ends with the last one, ``size`` is (width, height). Blanks at the end of a row are
+    ignored. Raises MapError with the line of the first row that has an unknown letter or another width.
     """
-    known, codes = set(free + occupied), np.frombuffer(occupied.encode("ascii"), np.uint8)
-    grid = np.empty((len(rows), width), dtype=bool)
-    for number, row in enumerate(rows):
-        row, line = row.rstrip(), first_line + number
-        if not known.issuperset(row):
-            column, letter = next((k, letter) for k, letter in enumerate(row, start=1) if letter not in known)
-            expected = f"one of {' '.join(free)} (free) or {' '.join(occupied)} (occupied)"
-            raise MapError(path, f"found the letter {letter!r} in column {column}, expected {expected}", line)
-        if len(row) != width:
-            raise MapError(path, f"the row has {len(row)} cells, expected {width}", line)
-        grid[-1 - number] = np.isin(np.frombuffer(row.encode("ascii"), np.uint8), codes)
+    width, height = size
+    # A letter is 0 where free, 1 where occupied, 2 where unknown.
+    codes = np.full(256, 2, np.uint8)
+    codes[list(free.encode())], codes[list(occupied.encode())] = 0, 1
+    blanks = any(body.find(blank) >= 0 for blank in _BLANKS)
+    rows = body.translate(None, _BLANKS) if blanks else body
+    within = _blank_within(body) if blanks else None
+    bad = height if within is None else body.count(b"\n", 0, within)
+    whole = min((len(rows) + 1) // (width + 1), height)
+    letters = np.frombuffer(rows, np.uint8, min(len(rows), whole * (width + 1)))
+    grid = np.empty((height, width), dtype=bool)
+    step = max(BLOCK // (width + 1), 1)
+    for start in range(0, whole, step):
+        block = letters[start * (width + 1) : (start + step) * (width + 1)]
+        if len(block) % (width + 1):
+            # The last row of the file has no line end.
+            block = np.append(block, np.uint8(ord("\n")))
+        block = block.reshape(-1, width + 1)
+        found = codes[block[:, :-1]]
+        right = (block[:, -1] == ord("\n")) & (found < 2).all(axis=1)
+        grid[height - start - len(block) : height - start] = found[::-1]
+        if not right.all():
+            bad = min(bad, start + int(right.argmin()))
+            break
+    else:
+        bad = min(bad, whole)
+    if bad < height:
+        raise _bad_row(path, body, bad, first_line, width, codes, free, occupied)
     return grid
+
+
+def _blank_within(body: bytes) -> int | None:
+    """Return where a blank stands before a letter, or None."""
+    letters = np.frombuffer(body, np.uint8)
+    for start in range(0, len(letters), BLOCK):
+        block = letters[start : start + BLOCK + 1]
+        blank = _IS_BLANK[block]
+        wrong = blank[:-1] & ~blank[1:] & (block[1:] != ord("\n"))
+        if wrong.any():
+            return start + int(wrong.argmax())
+    return None
+
+
+def _bad_row(
+    path, body: bytes, index: int, first_line: int, width: int, codes: np.ndarray, free: str, occupied: str
+) -> MapError:
+    """Return the error of a row that cannot be read."""
+    start = 0
+    # In blocks, because there may be as many rows as cells.
+    while (ends := body.count(b"\n", start, start + BLOCK)) < index:
+        start, index = start + BLOCK, index - ends
+    for _ in range(index):
+        start = body.find(b"\n", start) + 1
+    end = body.find(b"\n", start)
+    line = first_line + body.count(b"\n", 0, start)
+    row = body[start : end if end >= 0 else len(body)].rstrip()
+    wrong = codes[np.frombuffer(row, np.uint8)] == 2
+    if not wrong.any():
+        return MapError(path, f"the row has {len(row)} cells, expected {width}", line)
+    column = int(wrong.argmax())
+    letter = decode(path, row[column:], line)[0]
+    expected = f"one of {' '.join(free)} (free) or {' '.join(occupied)} (occupied)"
+    return MapError(path, f"found the letter {letter!r} in column {column + 1}, expected {expected}", line)

@@ -9,7 +9,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._files import check_size, make_grid, require_file
+from pymoo_gridpath.maps._files import BLOCK, check_size, make_grid, require_file, shorten
 
 MAGIC = b"\x93NUMPY"
 
@@ -45,33 +45,40 @@ def read_npy(
     """
     require_file(path)
     try:
-        array = _load(path)
+        occupied = _load(path)
     except (MapError, MemoryError):
         raise
     except Exception:
         # A damaged header is parsed as Python text and can fail in almost any way.
         raise MapError(path, "the array cannot be read, expected a whole .npy file written by numpy.save") from None
-    if array.dtype != bool:
-        wrong = (array != 0) & (array != 1)
-        if wrong.any():
-            y, x = np.argwhere(wrong)[0]
-            raise MapError(path, f"cell ({x}, {y}) holds {array[y, x]}, expected 0 (free) or 1 (occupied)")
-    return make_grid(path, array != 0, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
+    return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
 
 
 def _load(path) -> np.ndarray:
-    """Load the array, once the header has said that it is one of ours."""
+    """Load the array in blocks, once the header has said that it is one of ours and the file is as long as it says."""
     with open(path, "rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             raise MapError(path, "the file does not begin as a NumPy array, expected a .npy file written by numpy.save")
         file.seek(0)
         version = np.lib.format.read_magic(file)
         read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-        shape, _, dtype = read_header(file)
+        shape, column_order, dtype = read_header(file)
         if dtype.kind not in "biuf":
-            raise MapError(path, f"the array holds {dtype}, expected booleans or the numbers 0 and 1")
+            raise MapError(path, f"the array holds {shorten(dtype)}, expected booleans or the numbers 0 and 1")
         if len(shape) != 2:
             raise MapError(path, f"the array has {len(shape)} dimensions, expected 2 (height, width)")
         check_size(path, shape[1], shape[0])
-        file.seek(0)
-        return np.load(file, allow_pickle=False)
+        size, order = shape[0] * shape[1], "F" if column_order else "C"
+        found, needed = os.fstat(file.fileno()).st_size - file.tell(), size * dtype.itemsize
+        if found < needed:
+            raise MapError(path, f"the file has {found} bytes of cells, expected {needed}, those of a whole .npy file")
+        occupied = np.empty(size, dtype=bool)
+        for start in range(0, size, BLOCK):
+            values = np.fromfile(file, dtype, min(BLOCK, size - start))
+            wrong = (values != 0) & (values != 1)
+            if wrong.any():
+                at = int(wrong.argmax())
+                y, x = np.unravel_index(start + at, shape, order=order)
+                raise MapError(path, f"cell ({x}, {y}) holds {values[at]}, expected 0 (free) or 1 (occupied)")
+            occupied[start : start + len(values)] = values != 0
+        return occupied.reshape(shape, order=order)

@@ -2,28 +2,43 @@
 
 from __future__ import annotations
 
+import bisect
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image, ImageFile, UnidentifiedImageError
 
 from pymoo_gridpath.errors import MapError, visible
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._files import check_size, check_unknown, make_grid, require_file, shorten, warn
+from pymoo_gridpath.maps._declared import CountedReader, Tags, check_before, check_exif, check_jpeg, check_png, nodata_of
+from pymoo_gridpath.maps._files import MAX_CELLS, blocks, check_size, check_unknown, make_grid, require_file, shorten, warn
 from pymoo_gridpath.maps._ros_yaml import yaml_of_image
 
 # Raster formats only: Pillow would hand some others, such as EPS, to outside programs.
 FORMATS = ("PNG", "PPM", "BMP", "GIF", "JPEG", "TIFF", "WEBP")
+WITH_ALPHA = ("LA", "La", "PA", "RGBA", "RGBa")
 
 _WHITE_16 = 2**16 - 1
-_GDAL_NODATA = 42113
 # Thousandths of red, green and blue.
 _LUMINANCE = np.array([299, 587, 114], dtype=np.uint32)
-# Pixels that are turned into grey together, which bounds the memory that it takes.
-_BLOCK = 2**20
+
+MAX_DECODED = 900_000_000
+"""The largest number of bytes that an image may take while it is decoded."""
+
+# EXIF's number for how an image is turned, and what turns it back.
+ORIENTATION = 0x0112
+TURNS: dict[int, Callable[[np.ndarray], np.ndarray]] = {
+    2: lambda a: a[:, ::-1],
+    3: lambda a: a[::-1, ::-1],
+    4: lambda a: a[::-1],
+    5: lambda a: a.swapaxes(0, 1),
+    6: lambda a: a.swapaxes(0, 1)[:, ::-1],
+    7: lambda a: a[::-1, ::-1].swapaxes(0, 1),
+    8: lambda a: a.swapaxes(0, 1)[::-1],
+}
 
 
 @dataclass(frozen=True)
@@ -47,25 +62,40 @@ class Pixels:
     alpha: np.ndarray | None = None
     opaque: int = 255
 
-    def sums(self) -> tuple[np.ndarray, int]:
-        """Return the sum of the channels of each pixel, and that of white: their quotient is the mean from 0 to 1."""
-        if self.channels.ndim == 2:
-            return self.channels, self.white
-        return self.channels.sum(axis=2, dtype=np.uint16 if self.white == 255 else np.uint32), 3 * self.white
+    def below(self, threshold: float, unseen: bool) -> np.ndarray:
+        """Return where the mean of the channels, laid over white, is below a threshold; ``unseen`` where nothing is shown."""
+        white = self.white if self.channels.ndim == 2 else 3 * self.white
+        # In whole numbers, so that a grey value equal to the threshold stays equal.
+        first, whole = _first_from(threshold, white), white * self.opaque
+        most = whole - _first_from(threshold, whole)
+        height, width = self.channels.shape[:2]
+        below = np.empty((height, width), dtype=bool)
+        for rows in blocks(height, width):
+            shade = self.channels[rows]
+            if shade.ndim == 3:
+                # Three times as fast as `sum`, whose inner loop would be over three values.
+                red, green, blue = np.moveaxis(shade, 2, 0)
+                shade = red.astype(np.uint32) + green + blue
+            if self.alpha is None:
+                below[rows] = shade < first
+            else:
+                alpha = self.alpha[rows]
+                below[rows] = alpha * (white - shade.astype(np.uint32)) > most
+                below[rows][alpha == 0] = unseen
+        return below
 
     def grey(self) -> np.ndarray:
         """Return the luminance of each pixel by Rec. 601, uint8, rounded as GraphicsMagick with 16 bits a value does."""
         to_16_bits = _WHITE_16 // self.white
         height, width = self.channels.shape[:2]
         grey = np.empty((height, width), np.uint8)
-        n_rows = max(_BLOCK // width, 1)
-        for k in range(0, height, n_rows):
-            values = self.channels[k : k + n_rows].astype(np.uint32)
+        for rows in blocks(height, width):
+            values = self.channels[rows].astype(np.uint32)
             if values.ndim == 3:
                 values = (values @ _LUMINANCE * to_16_bits + 500) // 1000
             else:
                 values *= to_16_bits
-            grey[k : k + n_rows] = values // 257
+            grey[rows] = values // 257
         return grey
 
 
@@ -118,17 +148,8 @@ def read_image(
     if not _is_fraction(threshold):
         raise MapError(path, f"the option threshold is {shorten(threshold)}, expected a number from 0 to 1")
     pixels = read_pixels(path)
-    shade, white = pixels.sums()
-    if pixels.alpha is None:
-        occupied = (_grey_levels(white) < threshold)[shade]
-        unseen = np.zeros_like(occupied)
-    else:
-        # Over white, in whole numbers so that a grey value equal to the threshold stays equal.
-        alpha = pixels.alpha.astype(np.uint32)
-        over_white = shade * alpha + white * (pixels.opaque - alpha)
-        occupied = over_white / (white * pixels.opaque) < threshold
-        unseen = alpha == 0
-        occupied[unseen] = unknown == "occupied"
+    occupied = pixels.below(float(threshold), unknown == "occupied")
+    unseen = np.zeros_like(occupied) if pixels.alpha is None else pixels.alpha == 0
     if (described := yaml_of_image(path)) is not None:
         warn(
             path,
@@ -140,10 +161,17 @@ def read_image(
     )
 
 
-def read_pixels(path: str | os.PathLike[str]) -> Pixels:
+def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:
     """Decode an image; the one place that opens images.
 
-    Values of more than 8 bits are taken as 16-bit ones. Colours of 16 bits a channel are read as 8-bit ones.
+    Values of more than 8 bits are taken as 16-bit ones. Colours of 16 bits a channel are read as 8-bit ones. Pixels that the
+    tag of GDAL in a TIFF calls nodata are transparent.
+
+    Parameters
+    ----------
+    path : str or path-like
+    turn : bool, default True
+        Whether an image whose EXIF orientation says that it is turned or mirrored is turned as it says, or else refused.
 
     Raises
     ------
@@ -152,61 +180,110 @@ def read_pixels(path: str | os.PathLike[str]) -> Pixels:
     """
     require_file(path)
     with warnings.catch_warnings():
+        # Pillow warns of 89 million pixels, but `check_size` decides.
         warnings.simplefilter("ignore")
-        warnings.simplefilter("error", Image.DecompressionBombWarning)
         try:
-            with Image.open(path, formats=FORMATS) as image:
-                check_size(path, *image.size)  # before decoding
-                return _decode(path, image)
+            with CountedReader(path) as file:
+                tags = check_before(path, file)
+                with Image.open(file, formats=FORMATS) as image:
+                    check_size(path, *image.size)  # before decoding
+                    _check_cost(path, file, image)
+                    turned = image.format == "TIFF" and tags.get(ORIENTATION, (1,))[0] in TURNS
+                    image.load()
+                    check_exif(path, image)
+                    # Pillow has turned a TIFF by now.
+                    orientation = image.getexif().get(ORIENTATION, 1)
+                    pixels = _decode(path, image, tags)
         except (MapError, MemoryError):
             raise
-        except (Image.DecompressionBombError, Image.DecompressionBombWarning):
-            raise MapError(path, f"the image is too large, expected at most {Image.MAX_IMAGE_PIXELS} pixels") from None
+        except Image.DecompressionBombError:
+            raise MapError(path, f"the image is too large, expected at most {MAX_CELLS} pixels") from None
         except UnidentifiedImageError:
             raise MapError(path, f"no image can be recognised, expected one of {', '.join(FORMATS)}") from None
         except Exception:
             # A damaged file can raise almost anything: OSError, SyntaxError, ValueError, struct.error, zlib.error ...
             raise MapError(path, "the image is damaged or cut short, expected a whole image file") from None
+    turned |= orientation in TURNS
+    if turned and not turn:
+        raise MapError(
+            path, "the image says that it is turned (EXIF orientation), which map servers ignore; expected one that is not"
+        )
+    return _turned(pixels, TURNS[orientation]) if orientation in TURNS else pixels
 
 
-def _decode(path, image: Image.Image) -> Pixels:
-    mode = image.mode
-    if mode.startswith("F"):
-        raise MapError(path, f"the pixels are floating-point numbers (mode {mode}), expected whole numbers of 8 or 16 bits")
-    if mode.startswith("I"):
-        return _decode_16_bit(path, image)
-    if mode in ("LA", "La", "PA", "RGBA", "RGBa") or "transparency" in image.info:
-        channels = np.asarray(image.convert("RGBA"))
-        return Pixels(channels[..., :3], 255, channels[..., 3])
-    alpha = _alpha_of_nodata(image)
-    if mode in ("1", "L"):
-        return Pixels(np.asarray(image.convert("L")), 255, alpha)
-    return Pixels(np.asarray(image.convert("RGB")), 255, alpha)
+def _check_cost(path, file: CountedReader, image: ImageFile.ImageFile) -> None:
+    """Raise MapError for an image that covers only a part of its size, or would take too much memory or time."""
+    cells = image.width * image.height
+    boxes = [tile[1] or (0, 0, *image.size) for tile in image.tile]
+    covered = sum((right - left) * (lower - upper) for left, upper, right, lower in boxes)
+    if boxes and covered < cells:
+        raise MapError(path, f"the image has {covered} of {image.width} x {image.height} cells, expected all of them")
+    size = {"1": 2, "L": 2, "P": 4, "I;16": 4}.get(image.mode, 8)
+    if image.format == "JPEG":
+        check_jpeg(path, file, *image.size)
+        size += 2 * len(image.getbands()) if image.info.get("progressive") else 0
+    elif image.format == "WEBP":
+        size = 22
+    if size * cells > MAX_DECODED:
+        raise MapError(
+            path,
+            f"the image takes {size * cells} bytes when it is decoded, expected at most {MAX_DECODED}; a grey PNG takes less",
+        )
 
 
-def _decode_16_bit(path, image: Image.Image) -> Pixels:
-    values, white = np.asarray(image), _WHITE_16
-    low, high = int(values.min()), int(values.max())
-    if low < 0 or high > white:
+def _decode(path, image: Image.Image, tags: Tags) -> Pixels:
+    """Return the pixels of a loaded image, a block of rows at a time, because an image is large in every form."""
+    if image.mode.startswith("F"):
+        kind = f"floating-point numbers (mode {image.mode})"
+        raise MapError(path, f"the pixels are {kind}, expected whole numbers of 8 or 16 bits")
+    wide = image.mode.startswith("I")
+    key, nodata = image.info.get("transparency"), nodata_of(tags, image.mode)
+    own_alpha = not wide and (image.mode in WITH_ALPHA or key is not None)
+    grey = image.mode in ("1", "L") and not own_alpha
+    shape = (image.height, image.width)
+    channels = np.empty(shape if wide or grey else (*shape, 3), np.uint16 if wide else np.uint8)
+    alpha = None
+    if own_alpha or nodata is not None or (wide and isinstance(key, int)):
+        alpha = np.full(shape, 255, np.uint8)
+    low, high = 0, 0
+    for rows in blocks(*shape):
+        part = image.crop((0, rows.start, image.width, rows.stop))
+        values = np.asarray(part) if wide or nodata is not None else np.empty(0)
+        if own_alpha:
+            if key is not None:
+                part.info["transparency"] = key
+            coloured = np.asarray(part if part.mode == "RGBA" else part.convert("RGBA"))
+            channels[rows] = coloured[..., :3]
+            alpha[rows] = coloured[..., 3]  # pyright: ignore[reportOptionalSubscript]
+        elif wide:
+            clear = np.isin(values, [value for value in (key, nodata) if isinstance(value, int)])
+            known = values[~clear]
+            low, high = int(known.min(initial=low)), int(known.max(initial=high))
+            channels[rows] = np.where(clear, 0, values)
+            if alpha is not None:
+                alpha[rows][clear] = 0
+        else:
+            channels[rows] = np.asarray(part.convert("L" if grey else "RGB"))
+        if nodata is not None and not wide:
+            empty = values == nodata
+            alpha[rows][empty.all(axis=2) if empty.ndim == 3 else empty] = 0  # pyright: ignore[reportOptionalSubscript]
+    if low < 0 or high > _WHITE_16:
         raise MapError(path, f"the pixels range from {low} to {high}, expected whole numbers of 8 or 16 bits")
-    key = image.info.get("transparency")
-    alpha = np.where(values == key, 0, 255).astype(np.uint8) if isinstance(key, int) else _alpha_of_nodata(image)
-    return Pixels(values.astype(np.uint16), white, alpha)
+    # What a PNG file lacks ends up as zeros in the last row, or where it is interlaced in the last but one.
+    last = np.asarray(image.crop((0, max(image.height - 2, 0), image.width, image.height)))
+    if image.format == "PNG" and not all(row.any() for row in last):
+        check_png(path)
+    return Pixels(channels, _WHITE_16 if wide else 255, alpha)
 
 
-def _alpha_of_nodata(image: Image.Image) -> np.ndarray | None:
-    """Return which pixels of a TIFF hold no data by GDAL's tag, as an alpha channel, or None if it has no such tag."""
-    try:
-        nodata = float(getattr(image, "tag_v2", {})[_GDAL_NODATA])
-    except (KeyError, TypeError, ValueError):
-        return None
-    values = np.asarray(image)
-    empty = values == nodata
-    return np.where(empty.all(axis=2) if empty.ndim == 3 else empty, 0, 255).astype(np.uint8)
+def _turned(pixels: Pixels, turn: Callable[[np.ndarray], np.ndarray]) -> Pixels:
+    alpha = None if pixels.alpha is None else turn(pixels.alpha)
+    return Pixels(turn(pixels.channels), pixels.white, alpha, pixels.opaque)
 
 
-def _grey_levels(white: int) -> np.ndarray:
-    return np.arange(white + 1) / white
+def _first_from(threshold: float, white: int) -> int:
+    """Return the first whole number whose quotient by ``white`` is not below a threshold."""
+    return bisect.bisect_left(range(white + 1), True, key=lambda value: value / white >= threshold)
 
 
 def _is_fraction(value) -> bool:

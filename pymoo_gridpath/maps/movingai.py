@@ -8,17 +8,25 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
-from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_string, shorten
+from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_text_bytes, short_line, shorten
 
-PASSABLE = ".GS"
+# The benchmarks' own loader (``Map.cpp`` of HOG2) takes lower-case letters as their capitals, and any other character as
+# ground. The latter is refused here, because a wrong letter is more likely than such ground.
+PASSABLE = ".GSgs"
 # Water can be entered from water only, so to a robot that stands on the ground it is an obstacle.
-OCCUPIED = "@OTW"
+OCCUPIED = "@OTWotw"
+
+MAX_QUERIES = 250_000
+"""The largest number of entries that a scenario may have."""
+
+_INK = re.compile(rb"\S[^\n]*")
 
 _SCEN_COLUMNS = "bucket, map, width, height, start column, start row, goal column, goal row, length"
 
@@ -59,7 +67,7 @@ def read_movingai(
     """Read a map of the MovingAI benchmarks.
 
     The ground ``.`` and ``G`` and the swamp ``S`` are free. Trees ``T``, out of bounds ``@`` and ``O``, and water ``W``, which
-    cannot be entered from the ground, are occupied.
+    cannot be entered from the ground, are occupied. Lower-case letters mean the same.
 
     Parameters
     ----------
@@ -81,13 +89,13 @@ def read_movingai(
     MapError
         If the file cannot be read or is not such a map; the message names the line.
     """
-    lines = read_string(path).rstrip().split("\n")
-    width, height, first = _read_header(path, lines)
-    rows = lines[first:]
-    if len(rows) != height:
-        line = min(first + height, len(lines)) + (len(rows) > height)
-        raise MapError(path, f"found {len(rows)} rows below 'map', expected {height}", line)
-    occupied = parse_rows(path, rows, first + 1, width, PASSABLE, OCCUPIED)
+    data = read_text_bytes(path).rstrip()
+    width, height, start, first = _read_header(path, data)
+    rows = data.count(b"\n", start) + 1 if start <= len(data) else 0
+    if rows != height:
+        line = first + min(height, rows) - (rows < height)
+        raise MapError(path, f"found {rows} rows below 'map', expected {height}", line)
+    occupied = parse_rows(path, data[start:], first, (width, height), PASSABLE, OCCUPIED)
     return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
 
 
@@ -113,40 +121,52 @@ def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -
         names the line.
     """
     checks.instance("grid", grid, OccupancyGrid, optional=True)
-    lines = read_string(path).rstrip().split("\n")
-    if lines[0].split() not in (["version", "1"], ["version", "1.0"]):
-        raise MapError(path, f"found {shorten(lines[0])}, expected 'version 1' or 'version 1.0'", 1)
+    data = read_text_bytes(path).rstrip()
+    title = short_line(path, data, 0, 1)
+    if title.split() not in (["version", "1"], ["version", "1.0"]):
+        raise MapError(path, f"found {shorten(title)}, expected 'version 1' or 'version 1.0'", 1)
     queries = []
-    for line, text in enumerate(lines[1:], start=2):
-        if text.strip():
-            query = _read_query(path, text, line)
-            if grid is not None and (query.width, query.height) != (grid.width, grid.height):
-                raise MapError(
-                    path,
-                    f"the entry is for a map of {query.width} x {query.height} cells, "
-                    f"expected {grid.width} x {grid.height} as the grid {grid.name!r}",
-                    line,
-                )
-            queries.append(query)
+    line, position = 1, 0
+    for entry in _INK.finditer(data, len(data.partition(b"\n")[0])):
+        line += data.count(b"\n", position, entry.start())
+        position = entry.start()
+        if len(queries) == MAX_QUERIES:
+            raise MapError(path, f"the entry is one too many, expected at most {MAX_QUERIES} entries", line)
+        query = _read_query(path, short_line(path, data, position, line), line)
+        if grid is not None and (query.width, query.height) != (grid.width, grid.height):
+            raise MapError(
+                path,
+                f"the entry is for a map of {query.width} x {query.height} cells, "
+                f"expected {grid.width} x {grid.height} as the grid {grid.name!r}",
+                line,
+            )
+        queries.append(query)
     return queries
 
 
-def _read_header(path, lines: list[str]) -> tuple[int, int, int]:
-    """Return width, height and the index of the first row."""
-    if lines[0].split() != ["type", "octile"]:
-        raise MapError(path, f"found {shorten(lines[0])}, expected 'type octile'", 1)
+def _read_header(path, data: bytes) -> tuple[int, int, int, int]:
+    """Return width, height, where the first row begins, and its line."""
+    title = short_line(path, data, 0, 1)
+    if title.split() != ["type", "octile"]:
+        raise MapError(path, f"found {shorten(title)}, expected 'type octile'", 1)
     sizes: dict[str, int] = {}
-    for line, text in enumerate(lines[1:4], start=2):
+    position = 0
+    for line in (2, 3, 4):
+        position = data.find(b"\n", position) + 1
+        if position == 0:
+            raise MapError(path, "the file ends within its header, expected 'type octile', height, width and 'map'", line - 1)
+        text = short_line(path, data, position, line)
         words = text.split()
-        if words == ["map"] and len(sizes) == 2:
-            check_size(path, sizes["width"], sizes["height"])
-            return sizes["width"], sizes["height"], line
         missing = [key for key in ("height", "width") if key not in sizes]
+        if missing == [] and words == ["map"]:
+            check_size(path, sizes["width"], sizes["height"])
+            break
         if len(words) != 2 or words[0] not in missing:
             expected = " or ".join(f"'{key}' and a number" for key in missing) or "'map'"
             raise MapError(path, f"found {shorten(text)}, expected {expected}", line)
         sizes[words[0]] = _whole(path, words[1], words[0], line)
-    raise MapError(path, "the file ends within its header, expected 'type octile', height, width and 'map'", len(lines))
+    start = data.find(b"\n", position) + 1
+    return sizes["width"], sizes["height"], start or len(data) + 1, 5
 
 
 def _read_query(path, text: str, line: int) -> Query:

@@ -10,7 +10,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import counted
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._files import check_unknown, make_grid, warn
+from pymoo_gridpath.maps._files import blocks, check_unknown, make_grid, warn
 from pymoo_gridpath.maps._ros_yaml import Keys
 from pymoo_gridpath.maps.image import Pixels, read_pixels
 
@@ -70,8 +70,8 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
     The YAML file is read by the rules of yaml-cpp 0.7: of several documents the first; quoted numbers like others; ``010`` is
     ten; ``negate`` is a whole number, true unless 0, or one of y, yes, true, on, n, no, false, off, in small letters,
     capitals or Capitalised. The case of ``mode`` does not matter. Stricter than there, a key that stands twice is refused, and
-    so are thresholds outside 0 to 1, a resolution that is not positive and files of more than 64 KiB. Pixels that the tag of
-    GDAL in a TIFF calls nodata are treated as transparent.
+    so are thresholds outside 0 to 1, a resolution that is not positive, files of more than 64 KiB, and images that are turned
+    by EXIF, which map servers overlook. Pixels that the tag of GDAL in a TIFF calls nodata are treated as transparent.
 
     Older map servers (ROS 1, Navigation2 up to Iron) differ: they compare strictly (p > ``occupied_thresh``,
     p < ``free_thresh``), occupied first, in double precision and without cutting to 8 bits, so that a value that equals a
@@ -80,7 +80,7 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
     """
     check_unknown(path, unknown)
     settings = _read_settings(path)
-    pixels = read_pixels(settings.image)
+    pixels = read_pixels(settings.image, turn=False)
     grey = pixels.grey()
     percent = _occupancy(pixels, grey, settings)
     unseen = percent == UNKNOWN
@@ -111,7 +111,10 @@ class _Settings:
 
 def _occupancy(pixels: Pixels, grey: np.ndarray, settings: _Settings) -> np.ndarray:
     """Return the occupancy of every pixel as the map server publishes it: 0 to 100, or -1 where unknown."""
-    percent = _levels(settings)[grey]
+    levels = _levels(settings)
+    percent = np.empty(grey.shape, levels.dtype)
+    for rows in blocks(len(grey), grey.shape[1]):
+        percent[rows] = levels[grey[rows]]
     if pixels.alpha is not None and settings.mode != "raw":
         percent[pixels.alpha < pixels.opaque] = UNKNOWN
     return percent

@@ -25,15 +25,18 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
-from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_string, shorten
+from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, plain, read_text_bytes, short_line, shorten
 
 FREE = ".0"
 OCCUPIED = "#@X1"
+
+_INK = re.compile(rb"\S")
 
 
 @dataclass(frozen=True)
@@ -92,11 +95,12 @@ def read_text(
     MapError
         If the file cannot be read or is not such a map; the message names the line.
     """
-    header, lines, first = _split(path)
-    rows = lines[first:]
-    width = len(rows[0].rstrip())
-    check_size(path, width, len(rows), first + 1)
-    occupied = parse_rows(path, rows, first + 1, width, FREE, OCCUPIED)
+    header, data, start, lines = _split(path)
+    first = data.count(b"\n", 0, start) + 1
+    end = data.find(b"\n", start)
+    size = len(data[start : end if end >= 0 else len(data)].rstrip()), data.count(b"\n", start) + 1
+    check_size(path, *size, first)
+    occupied = parse_rows(path, data[start:], first, size, FREE, OCCUPIED)
     options = {
         "corner_cutting": header.corner_cutting if corner_cutting is None else corner_cutting,
         "resolution": header.resolution if resolution is None else resolution,
@@ -105,9 +109,9 @@ def read_text(
     grid = make_grid(path, occupied, header.name, **{key: value for key, value in options.items() if value is not None})
     for role, cell in (("start", header.start), ("goal", header.goal)):
         if cell is not None and not grid.is_free(cell):
-            line = next(k for k, text in enumerate(lines) if text.partition(":")[0].strip() == role) + 1
+            found = ", ".join(map(plain, cell))
             size = f"{grid.width} x {grid.height}"
-            raise MapError(path, f"{role} is {cell[0]}, {cell[1]}, expected a free cell of the {size} cells", line)
+            raise MapError(path, f"{role} is {found}, expected a free cell of the {size} cells", lines[role])
     return grid
 
 
@@ -131,25 +135,30 @@ def read_text_header(path: str | os.PathLike[str]) -> TextHeader:
     return _split(path)[0]
 
 
-def _split(path) -> tuple[TextHeader, list[str], int]:
-    """Return the header, all lines and the index of the first row."""
-    lines = read_string(path).rstrip().split("\n")
+def _split(path) -> tuple[TextHeader, bytes, int, dict[str, int]]:
+    """Return the header, all of the text, where its first row begins, and the line of each key."""
+    data = read_text_bytes(path).rstrip()
     found: dict[str, object] = {}
-    for index, text in enumerate(lines):
-        key, colon, value = (part.strip() for part in text.partition(":"))
-        if not colon and key:
-            return TextHeader(**found), lines, index  # pyright: ignore[reportArgumentType]
-        if not colon:
-            continue
+    lines: dict[str, int] = {}
+    position, line = 0, 1
+    while (first := _INK.search(data, position)) is not None:
+        start = data.rfind(b"\n", position, first.start()) + 1 or position
+        line += data.count(b"\n", position, start)
+        end = data.find(b"\n", start)
+        end = len(data) if end < 0 else end
+        if data.find(b":", start, end) < 0:
+            return TextHeader(**found), data, start, lines  # pyright: ignore[reportArgumentType]
+        key, _, value = (part.strip() for part in short_line(path, data, start, line).partition(":"))
         if key not in _HEADER:
-            raise MapError(path, f"found the key {shorten(key)}, expected one of {', '.join(_HEADER)} or a row", index + 1)
+            raise MapError(path, f"found the key {shorten(key)}, expected one of {', '.join(_HEADER)} or a row", line)
         if key in found:
-            raise MapError(path, f"the key {key!r} is given again, expected it once", index + 1)
+            raise MapError(path, f"the key {key!r} is given again, expected it once", line)
         convert, expected = _HEADER[key]
         try:
-            found[key] = convert(value)
+            found[key], lines[key] = convert(value), line
         except ValueError:
-            raise MapError(path, f"{key} is {shorten(value)}, expected {expected}", index + 1) from None
+            raise MapError(path, f"{key} is {shorten(value)}, expected {expected}", line) from None
+        position = end
     raise MapError(path, "found no row, expected at least one row of '.' and '#'")
 
 

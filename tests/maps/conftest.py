@@ -51,13 +51,15 @@ def refused():
     return refused
 
 
-def png_bytes(width: int, height: int, depth: int, colour: int, rows: list[bytes], *chunks: tuple[bytes, bytes]) -> bytes:
+def png_bytes(
+    width: int, height: int, depth: int, colour: int, rows: list[bytes], *chunks: tuple[bytes, bytes], interlaced: int = 0
+) -> bytes:
     """Build a PNG by hand; colour type 0 is grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGBA."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    header = struct.pack(">IIBBBBB", width, height, depth, colour, 0, 0, 0)
+    header = struct.pack(">IIBBBBB", width, height, depth, colour, 0, 0, interlaced)
     body = zlib.compress(b"".join(b"\0" + row for row in rows))
     parts = [(b"IHDR", header), *chunks, (b"IDAT", body), (b"IEND", b"")]
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*part) for part in parts)

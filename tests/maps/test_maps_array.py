@@ -6,7 +6,8 @@ import struct
 import numpy as np
 import pytest
 
-from pymoo_gridpath.maps import _files, read_npy
+from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.maps import _files, array, read_npy
 
 
 def saved(array, **options) -> bytes:
@@ -76,3 +77,29 @@ def test_too_large_arrays_are_refused(write, refused, monkeypatch):
     path = write("m.npy", saved(np.zeros((3, 3), bool)))
     monkeypatch.setattr(_files, "MAX_CELLS", 8)
     refused(read_npy, path, None, "3 x 3", "at most 8 cells")
+
+
+@pytest.mark.parametrize("block", [1, 5, 1 << 22])
+def test_views_are_read_as_their_contiguous_copies(write, monkeypatch, block):
+    monkeypatch.setattr(array, "BLOCK", block)
+    base = np.random.default_rng(1).random((6, 7)) < 0.4
+    frozen = base.copy()
+    frozen.flags.writeable = False
+    for view in (base.T, base[::-1], base[:, ::-1], base[::2, 1::3], np.asfortranarray(base), frozen, base.astype(">f2").T):
+        assert np.array_equal(read_npy(write("m.npy", saved(view))).occupied, view.astype(bool))
+    wrong = np.asfortranarray(base.astype("u1"))
+    wrong[4, 2] = 9
+    for layout in "CF":
+        with pytest.raises(MapError, match=r"cell \(2, 4\) holds 9"):
+            read_npy(write("m.npy", saved(np.array(wrong, order=layout))))
+
+
+def test_what_a_header_declares_is_not_believed(write, refused):
+    """Neither more cells than bytes, nor numbers and types that would fill the screen."""
+    header = "{{'descr': {}, 'fortran_order': False, 'shape': ({}, {})}}".format
+    refused(read_npy, write("a.npy", with_header(header("'<f8'", 9000, 9000), bytes(99))), None, "99 bytes", "648000000")
+    error = refused(read_npy, write("b.npy", with_header(header("'|u1'", "9" * 4000, 1))), None, "over 10^15")
+    assert len(str(error)) < 400
+    wide = "[" + ", ".join(f"('field{k}', '<i4')" for k in range(400)) + "]"
+    error = refused(read_npy, write("c.npy", with_header(header(wide, 1, 1))), None, "booleans")
+    assert len(str(error)) < 400

@@ -7,7 +7,8 @@ import pytest
 from PIL import Image, TiffImagePlugin
 
 from pymoo_gridpath.errors import MapWarning
-from pymoo_gridpath.maps import _files, read_image
+from pymoo_gridpath.maps import _declared, _files, read_image, read_ros
+from pymoo_gridpath.maps import image as image_reader
 
 
 def cells(grid) -> list[list[int]]:
@@ -161,11 +162,13 @@ def test_a_truncated_image_is_refused(write, refused, png):
     refused(read_image, write("d.pgm", b"P5\n0 0\n255\n"), None, "image")
 
 
-@pytest.mark.parametrize("factor", [1.5, 3.0], ids=["where Pillow warns", "where Pillow raises"])
-def test_decompression_bombs_are_refused_unread(write, refused, png, monkeypatch, factor):
+def test_decompression_bombs_are_refused_unread(write, refused, png, monkeypatch):
     monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 1000)
-    path = write("bomb.png", png(int(1000 * factor), 1, 8, 0, [b""]))
-    refused(read_image, path, None, "too large", "1000 pixels")
+    refused(read_image, write("bomb.png", png(3000, 1, 8, 0, [b""])), None, "too large", f"at most {_files.MAX_CELLS}")
+    # Where Pillow only warns, the largest number of cells decides.
+    assert read_image(write("m.png", png(1500, 1, 8, 0, [bytes(1500)]))).n_occupied == 1500
+    monkeypatch.setattr(_files, "MAX_CELLS", 1499)
+    refused(read_image, write("m.png", png(1500, 1, 8, 0, [bytes(1500)])), None, "1500 x 1", "1499")
 
 
 def test_the_size_is_checked_before_the_pixels(write, refused, png, monkeypatch):
@@ -181,3 +184,171 @@ def test_the_size_is_checked_before_the_pixels(write, refused, png, monkeypatch)
 def test_bad_options_are_refused(write, refused, option, value):
     path = write("m.pgm", b"P5\n1 1\n255\n\0")
     refused(read_image, path, None, option, value, **{option: value})
+
+
+# -- what is declared and what is there --------------------------------------------------------------------------------
+
+
+def tiff(tags: dict[int, tuple[int, ...] | bytes], data: bytes) -> bytes:
+    """A TIFF built by hand; the data stand behind the tags, and where a tag holds -1, their place is put in."""
+    entries, later = b"", b""
+    start = 8 + 2 + 12 * len(tags) + 4
+    for tag, values in sorted(tags.items()):
+        kind, size = (2, len(values)) if isinstance(values, bytes) else (4, 4 * len(values))
+        where = start + sum(len(v) if isinstance(v, bytes) else 4 * len(v) for v in tags.values())
+        packed = (
+            values if isinstance(values, bytes) else struct.pack(f"<{len(values)}I", *(where if v == -1 else v for v in values))
+        )
+        entries += struct.pack("<HHI", tag, kind, len(values))
+        entries += packed.ljust(4, b"\0") if size <= 4 else struct.pack("<I", start + len(later))
+        later = later + packed
+    return b"II*\0" + struct.pack("<IH", 8, len(tags)) + entries + bytes(4) + later + data
+
+
+def grey_tiff(width, height, data, compression=1, strips=1, **more) -> bytes:
+    tags = {
+        256: (width,),
+        257: (height,),
+        258: (8,),
+        259: (compression,),
+        262: (1,),
+        273: (-1,) * strips,
+        277: (1,),
+        278: (height,),
+    }
+    return tiff({**tags, 279: (len(data),) * strips, **{int(k[1:]): v for k, v in more.items()}}, data)
+
+
+def test_a_tiff_is_believed_with_the_bytes_behind_it(write, refused):
+    assert cells(read_image(write("a.tif", grey_tiff(3, 2, bytes([0, 255, 255, 255, 0, 0]))))) == [[1, 0, 0], [0, 1, 1]]
+    declared = "9 x 8781830"
+    refused(read_image, write("b.tif", grey_tiff(9, 8_781_830, bytes(20))), None, declared, "too few")
+    refused(read_image, write("c.tif", grey_tiff(9, 8_781_830, bytes(18), t278=(2,))), None, declared, "1 of them")
+    refused(read_image, write("d.tif", grey_tiff(9, 8_781_830, bytes(18), compression=8)), None, declared, "too few")
+    refused(read_image, write("e.tif", grey_tiff(9, 8_781_830, bytes(18), compression=4, t258=(1,))), None, declared, "too few")
+    refused(read_image, write("f.tif", grey_tiff(3, 6, bytes(6) * 9, t278=(2,))), None, "3 parts", "1 of them")
+    refused(read_image, write("g.tif", grey_tiff(1, 200_000, bytes(200_000), strips=200_000, t278=(1,))), None, "200000 parts")
+    tiles = {"t322": (4096,), "t323": (4096,), "t324": (-1,), "t325": (9,)}
+    refused(read_image, write("h.tif", grey_tiff(3, 3, bytes(9), **tiles)), None, "tiles of 4096 x 4096")
+
+
+@pytest.mark.parametrize("compression", [1, 5, 8, 32773])
+def test_tiffs_of_every_usual_kind_are_believed(tmp_path, compression):
+    expected = np.random.default_rng(compression).random((300, 200)) < 0.3
+    names = {1: None, 5: "tiff_lzw", 8: "tiff_adobe_deflate", 32773: "packbits"}
+    Image.fromarray(np.where(expected, 0, 255).astype(np.uint8)).save(tmp_path / "m.tif", compression=names[compression])
+    assert np.array_equal(cells(read_image(tmp_path / "m.tif")), expected)
+    Image.new("1", (4000, 5000), 1).save(tmp_path / "blank.tif", compression="group4")
+    assert read_image(tmp_path / "blank.tif").n_occupied == 0
+
+
+@pytest.mark.parametrize("interlaced", [0, 1])
+def test_a_png_whose_pixels_end_early_is_refused(write, refused, png, interlaced):
+    """Pillow leaves them black, without a word."""
+    whole = png(10, 10, 8, 0, [bytes([255] * 10)] * 10)
+    assert read_image(write("a.png", whole)).n_occupied == 0
+    for rows in (7, 9):
+        short = png(10, 10, 8, 0, [bytes([255] * 10)] * rows, interlaced=interlaced)
+        refused(read_image, write("b.png", short), None, "damaged" if interlaced else f"{11 * (10 - rows)} bytes early")
+    # Black to the last row is a map like others.
+    assert read_image(write("c.png", png(10, 10, 8, 0, [bytes(10)] * 10))).n_occupied == 100
+
+
+def test_other_images_are_believed_with_the_bytes_behind_them(tmp_path, write, refused):
+    image = Image.new("L", (100, 100), 255)
+    image.save(tmp_path / "a.jpg")
+    data = bytearray((tmp_path / "a.jpg").read_bytes())
+    struct.pack_into(">HH", data, data.index(b"\xff\xc0") + 5, 9000, 9000)
+    refused(read_image, write("b.jpg", bytes(data)), None, "9000 x 9000", "too few")
+    image.save(tmp_path / "a.gif")
+    data = bytearray((tmp_path / "a.gif").read_bytes())
+    struct.pack_into("<HH", data, 6, 9000, 9000)
+    refused(read_image, write("b.gif", bytes(data)), None, "10000 of 9000 x 9000")
+
+
+def test_images_that_take_too_long_are_refused(tmp_path, write, refused, png, monkeypatch):
+    monkeypatch.setattr(_declared, "MAX_READS", 300)
+    assert read_image(write("a.png", png(1, 1, 8, 0, [b"\xff"], *[(b"abCd", b"")] * 20))).n_occupied == 0
+    refused(read_image, write("b.png", png(1, 1, 8, 0, [b"\xff"], *[(b"abCd", b"")] * 200)), None, "image")
+    monkeypatch.setattr(_declared, "MAX_PLAIN", 50)
+    refused(read_image, write("c.pgm", b"P2 30 1 1" + b" 1" * 30), None, "69 bytes", "at most 50", "binary")
+    Image.new("L", (64, 64)).save(tmp_path / "d.jpg", progressive=True)
+    assert read_image(tmp_path / "d.jpg").n_occupied == 64 * 64
+    monkeypatch.setattr(_declared, "MAX_SCANNED", 64 * 64 * 3)
+    refused(read_image, tmp_path / "d.jpg", None, "scans", "not progressive")
+    monkeypatch.setattr(image_reader, "MAX_DECODED", 7999)
+    refused(read_image, write("e.ppm", b"P6 50 20 255\n" + bytes(3000)), None, "8000 bytes", "7999")
+    assert read_image(write("f.pgm", b"P5 50 20 255\n" + bytes(1000))).n_occupied == 1000
+
+
+def test_tags_and_exif_of_too_many_values_are_refused(write, refused, png, monkeypatch):
+    monkeypatch.setattr(_declared, "MAX_VALUES", 50)
+    refused(read_image, write("a.tif", grey_tiff(3, 1, bytes(3), t37500=(0,) * 51)), None, "tag 37500", "51 values")
+    nested = struct.pack("<HHHII", 1, 37500, 3, 999, 0)
+    data = grey_tiff(3, 1, bytes(3) + nested, t34665=(0,))
+    place = struct.pack("<HHI", 34665, 4, 1)
+    data = data.replace(place + bytes(4), place + struct.pack("<I", len(data) - len(nested)))
+    refused(read_image, write("b.tif", data), None, "tag 37500", "999 values")
+    monkeypatch.setattr(_declared, "MAX_EXIF", 103)
+    refused(read_image, write("c.png", png(1, 1, 8, 0, [b"\0"], (b"eXIf", b"II*\0" + bytes(96)))), None, "106 bytes", "EXIF")
+    assert read_image(write("d.png", png(1, 1, 8, 0, [b"\0"], (b"eXIf", b"II*\0" + bytes(90))))).n_occupied == 1
+
+
+def test_signed_pixels_are_refused(write, refused):
+    data = grey_tiff(3, 1, bytes([255, 0, 100]), t339=(2,))
+    refused(read_image, write("a.tif", data), None, "signed", "8 bits")
+    wide = grey_tiff(3, 1, struct.pack("<3h", -1, 0, 100), t258=(16,), t339=(2,))
+    refused(read_image, write("b.tif", wide), None, "from -1 to 100")
+
+
+@pytest.mark.parametrize(("unknown", "clear"), [("free", 0), ("occupied", 1)])
+def test_nodata_is_unknown_whatever_the_pixels_are(write, unknown, clear):
+    def read(data):
+        grid = read_image(write("m.tif", data), unknown=unknown)
+        assert grid.unknown[::-1].astype(int).tolist() == [[0, 1, 0]]
+        return cells(grid)
+
+    assert read(grey_tiff(3, 1, bytes([0, 7, 255]), t42113=b"7\0")) == [[1, clear, 0]]
+    assert read(grey_tiff(3, 1, bytes([0, 7, 255]), t262=(0,), t42113=b"7\0")) == [[0, clear, 1]]
+    signed = grey_tiff(3, 1, struct.pack("<3h", 0, -9999, 32767), t258=(16,), t339=(2,), t42113=b"-9999\0")
+    assert read(signed) == [[1, clear, 1]]
+
+
+@pytest.mark.parametrize("name", ["m.jpg", "m.png", "m.webp", "m.tif"])
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_exif_orientation_is_applied(tmp_path, refused, name, orientation):
+    """A corner of the image, named in the text of EXIF by the place of row 0 and column 0."""
+    image = Image.new("L", (48, 32), 255)
+    image.paste(0, (0, 0, 16, 16))
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    image.save(
+        tmp_path / name, exif=exif, **({"quality": 100} if name == "m.jpg" else {"lossless": True} if "webp" in name else {})
+    )
+    seen = np.array(cells(read_image(tmp_path / name)))
+    assert seen.shape == ((32, 48) if orientation < 5 else (48, 32))
+    top = orientation in (1, 2, 5, 6)
+    left = orientation in (1, 4, 5, 8)
+    corner = seen[:16] if top else seen[-16:]
+    assert (corner[:, :16] if left else corner[:, -16:]).all() and seen.sum() == 256
+    yaml = "image: {}\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.19\n"
+    (tmp_path / "m.yaml").write_text(yaml.format(name))
+    if orientation == 1:
+        assert read_ros(tmp_path / "m.yaml").n_occupied == 256
+    else:
+        refused(lambda _: read_ros(tmp_path / "m.yaml"), tmp_path / name, None, "EXIF orientation")
+
+
+def test_images_are_read_alike_in_blocks_of_any_size(write, png, monkeypatch):
+    rng = np.random.default_rng(5)
+    files = [
+        write("a.png", png(7, 9, 8, 0, [rng.bytes(7) for _ in range(9)])),
+        write("b.png", png(7, 9, 8, 6, [rng.bytes(28) for _ in range(9)])),
+        write("c.png", png(7, 9, 16, 0, [rng.bytes(14) for _ in range(9)], (b"tRNS", b"\0\7"))),
+        write("d.png", png(7, 9, 8, 0, [rng.bytes(7) for _ in range(9)], (b"tRNS", b"\0\7"))),
+        write("e.tif", grey_tiff(7, 9, rng.bytes(63), t42113=b"7\0")),
+    ]
+    expected = [read_image(file) for file in files]
+    for block in (1, 7, 20):
+        monkeypatch.setattr(_files, "BLOCK", block)
+        assert [read_image(file) for file in files] == expected

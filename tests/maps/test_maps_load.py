@@ -92,6 +92,9 @@ def test_an_option_that_the_format_does_not_know_is_refused(write, refused, kind
         ("m.txt", b"\xff\xfe.", 1, ["UTF-8"]),
         ("m.txt", b"", None, ["no row"]),
         ("m.scen", SCEN, None, ["read_scen"]),
+        ("m.3dmap", b"voxel 3 2 4\n0 1 2\n", None, ["voxel map", "three dimensions"]),
+        ("m.txt", b"voxel 3 2 4\n0 1 2\n", None, ["voxel map"]),
+        ("m.3dmap", b"", None, ["voxel map"]),
     ],
 )
 def test_what_is_no_map_is_refused(write, refused, name, content, line, words):

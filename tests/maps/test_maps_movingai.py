@@ -4,7 +4,7 @@ import pytest
 
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps import Query, read_movingai, read_scen
+from pymoo_gridpath.maps import Query, movingai, read_movingai, read_scen
 
 SMALL = "type octile\nheight 2\nwidth 4\nmap\n.GS@\nOTW.\n"
 
@@ -17,7 +17,9 @@ def test_rows_are_turned_so_that_y_points_up(write):
 
 
 @pytest.mark.parametrize(("letter", "free"), [(".", 1), ("G", 1), ("S", 1), ("W", 0), ("T", 0), ("@", 0), ("O", 0)])
-def test_every_terrain(write, letter, free):
+@pytest.mark.parametrize("case", [str.upper, str.lower])
+def test_every_terrain(write, letter, free, case):
+    letter = case(letter)
     path = write("t.map", f"type octile\nheight 1\nwidth 1\nmap\n{letter}\n")
     assert read_movingai(path).n_occupied == 1 - free
 
@@ -114,11 +116,19 @@ def test_an_entry_for_another_map_is_refused(write, refused):
     refused(read_scen, path, 3, "5 x 4", "3 x 2", grid=OccupancyGrid([[0, 0, 0], [0, 0, 0]]))
 
 
-@pytest.mark.parametrize("reader", [read_movingai, read_scen])
-def test_text_in_another_encoding_is_refused(write, refused, reader):
-    refused(reader, write("bad.map", b"type octile\nheight \xff\n"), 2, "0xff", "UTF-8")
+@pytest.mark.parametrize(("reader", "title"), [(read_movingai, b"type octile"), (read_scen, b"version 1")])
+def test_text_in_another_encoding_is_refused(write, refused, reader, title):
+    refused(reader, write("bad.map", title + b"\nheight \xff\n"), 2, "0xff", "UTF-8")
 
 
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(MapError, match=r"no\.map: no such file, expected a map file"):
         read_movingai(tmp_path / "no.map")
+
+
+def test_a_scenario_may_have_so_many_entries(write, refused, monkeypatch):
+    monkeypatch.setattr(movingai, "MAX_QUERIES", 2)
+    assert len(read_scen(write("a.scen", HEADER + "\n \n" + ENTRY * 2))) == 2
+    refused(read_scen, write("b.scen", HEADER + "\n \n" + ENTRY * 3), 6, "one too many", "at most 2")
+    refused(read_scen, write("c.scen", HEADER + "0 " * 6000), 2, "11999 bytes", "at most 10000")
+    refused(read_movingai, write("d.map", "type octile\n" + "a " * 6000 + "\n"), 2, "11999 bytes", "at most 10000")

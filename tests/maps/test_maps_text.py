@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from pymoo_gridpath.maps import TextHeader, _files, read_text, read_text_header
@@ -87,3 +88,42 @@ def test_too_large_maps_are_refused(write, refused, monkeypatch):
 
 def test_a_bad_option_is_refused(write, refused):
     refused(read_text, write("m.txt", ROWS), None, "resolution", resolution=-1)
+
+
+@pytest.mark.parametrize("text", ["#.. \n.@.\t\f\n", "#..\n.@. ", "\n \n#..  \n.@.\n"])
+def test_blanks_at_the_ends_of_rows_are_ignored(write, text):
+    assert read_text(write("m.txt", text)).occupied.astype(int).tolist() == [[0, 1, 0], [1, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        (" ..\n...\n", 1, ["' '", "column 1"]),
+        ("...  \n. .  \n...\n", 2, ["' '", "column 2"]),
+        ("...  \n...\n..  \n", 3, ["2 cells", "3"]),
+        ("...\n" * 5 + "....\n..?\n", 6, ["4 cells", "3"]),
+        ("...\n" * 5 + "..?\n....\n", 6, ["'?'", "column 3"]),
+        ("name: " + "x" * 20_000 + "\n...\n", 1, ["20006 bytes", "at most 10000"]),
+        ("start: " + "1" * 4000 + " 0\n...\n", 1, ["start is over 10^15, 0"]),
+    ],
+)
+def test_the_first_bad_line_is_named_whatever_stands_around_it(write, refused, monkeypatch, text, line, words):
+    path = write("bad.txt", text)
+    for block in (4, 9, 1 << 22):
+        monkeypatch.setattr(_files, "BLOCK", block)
+        refused(read_text, path, line, *words)
+
+
+@pytest.mark.parametrize("block", [1, 7, 64])
+def test_rows_are_read_alike_in_blocks_of_any_size(write, monkeypatch, block):
+    rng = np.random.default_rng(block)
+    occupied = rng.random((23, 5)) < 0.4
+    rows = ["".join(".#"[int(cell)] for cell in row) + " " * rng.integers(3) for row in occupied[::-1]]
+    monkeypatch.setattr(_files, "BLOCK", block)
+    assert np.array_equal(read_text(write("m.txt", "\n".join(rows))).occupied, occupied)
+
+
+def test_empty_lines_by_the_million_are_skipped(write, refused):
+    assert read_text(write("m.txt", b"\n" * 5_000_000 + ROWS.encode())).n_occupied == 2
+    refused(read_text, write("bad.txt", b"\n" * 5_000_000), None, "no row")
+    refused(read_text, write("late.txt", b"\n" * 5_000_000 + b"..\n.\n"), 5_000_002, "1 cells")
