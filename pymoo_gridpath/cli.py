@@ -20,8 +20,9 @@ from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.errors import GridError, GridPathError, counted, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import ShippedMap, TextHeader, load_map, map_format, read_text_header, shipped_maps
+from pymoo_gridpath.memory import is_want_of_memory, needed, want_of_memory
 from pymoo_gridpath.progress import Progress, say, warnings_as_lines
-from pymoo_gridpath.representations import REPRESENTATIONS
+from pymoo_gridpath.representations import REPRESENTATIONS, default_representation
 from pymoo_gridpath.study.commands import add_study_commands
 
 DEFAULT_MAP = "warehouse"
@@ -50,7 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(_join_cells(given))
     try:
         with warnings_as_lines():
-            code = arguments.run(arguments)
+            code = _carry_out(arguments)
         sys.stdout.flush()
         return code
     except GridPathError as error:
@@ -70,6 +71,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         say(f"the output cannot be written: {error.strerror or error}{where}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_BAD_INPUT
+
+
+def _carry_out(arguments) -> int:
+    """Run the command, and make a sentence of want of memory."""
+    try:
+        return arguments.run(arguments)
+    except Exception as error:
+        if not is_want_of_memory(error):
+            raise
+        # Without what the frames of the error hold.
+        sentence = want_of_memory(getattr(arguments, "needs", ""))
+    raise GridPathError(sentence)
 
 
 # -- arguments ----------------------------------------------------------------------------------------------------------
@@ -208,11 +221,13 @@ def _plan(arguments) -> int:
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = _unknown(grid), describe_source(grid)
     grid = _inflate(grid, arguments.radius, start, goal)
+    representation = arguments.representation or default_representation(grid.corner_cutting, arguments.axis)
+    arguments.needs = _needed(grid, start, representation, arguments)
     problem = GridPathProblem(
         grid,
         start,
         goal,
-        representation=arguments.representation,
+        representation=representation,
         objectives=arguments.objectives,
         obstacles=arguments.obstacles or "penalty",
         penalty=arguments.penalty,
@@ -336,6 +351,13 @@ def _query(arguments, grid: OccupancyGrid, known: ShippedMap | TextHeader | None
             f"(bottom) to {grid.height - 1}"
         )
     return grid.check_query(start, goal)
+
+
+def _needed(grid: OccupancyGrid, start, representation: str, arguments) -> str:
+    """Return what a plan costs in memory, in words."""
+    height, width = grid.box_of(start).shape
+    exact = (arguments.algorithm or "").lower() == "exact"
+    return needed(representation, height * width, exact, "turn" in arguments.objectives, f"{width} x {height}")
 
 
 def _inflate(grid: OccupancyGrid, radius: float, start, goal) -> OccupancyGrid:

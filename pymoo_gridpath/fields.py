@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,14 +11,14 @@ from scipy import ndimage
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridError
-from pymoo_gridpath.grid import OccupancyGrid, check_grid
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 
 # Potentials are rounded to multiples of this, about 9e-10. Sums of such numbers are exact in double precision (up to
 # 2**23), whatever their order, so paths over the same cells never differ by rounding noise.
 QUANTUM = 2.0**-30
 
 
-def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5) -> np.ndarray:
+def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5, box: Box | None = None) -> np.ndarray:
     """Return the bell-shaped repulsive potential of the obstacles.
 
     The potential of a cell is the sum over all occupied cells, itself included if it is occupied, of
@@ -28,10 +29,12 @@ def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5) -> np.ndarray
     grid : OccupancyGrid
     variance : float, default 0.5
         Variance of the bell in squared cells; larger values make paths keep further away.
+    box : Box, optional
+        The cells whose potential is wanted; all by default.
 
     Returns
     -------
-    numpy.ndarray of float, shape (height, width)
+    numpy.ndarray of float, shape (height, width) of the grid or of the box
         Rounded to multiples of 2**-30.
 
     Raises
@@ -50,9 +53,12 @@ def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5) -> np.ndarray
     reach = math.ceil(min(math.sqrt(76.0 * variance), max(grid.shape)))
     with np.errstate(over="ignore"):  # of the narrowest bells, which are 0 beyond their own cell
         kernel = np.exp(-(np.arange(-reach, reach + 1.0) ** 2) / (2.0 * variance))
-    field = grid.occupied.astype(float)
+    box = grid.whole if box is None else box
+    part = box.grown(reach, grid.shape)
+    field = grid.occupied[part.slices].astype(float)
     for axis in (0, 1):
         field = ndimage.correlate1d(field, kernel, axis=axis, mode="constant")
+    field = field[Box(box.x0 - part.x0, box.y0 - part.y0, box.x1 - part.x0, box.y1 - part.y0).slices]
     return np.round(field / QUANTUM) * QUANTUM
 
 
@@ -67,6 +73,37 @@ def clearance(grid: OccupancyGrid) -> np.ndarray:
     if not check_grid(grid).occupied.any():
         return np.full(grid.shape, np.inf)
     return np.asarray(ndimage.distance_transform_edt(~grid.occupied))
+
+
+class BoxedField:
+    """A field over a grid that is known in a box, and worked out as a whole once a cell outside is asked for.
+
+    Parameters
+    ----------
+    inside : numpy.ndarray of float, shape (height, width) of the box
+    box : Box
+    width : int
+        Of the grid.
+    whole : callable
+        Called without arguments, returns the field over the grid, shape (height, width).
+    """
+
+    def __init__(self, inside: np.ndarray, box: Box, width: int, whole: Callable[[], np.ndarray]):
+        self.inside, self.box = inside, box
+        self._width, self._work_out, self._whole = width, whole, None
+
+    def __array__(self, dtype=None, copy=None) -> np.ndarray:
+        if self._whole is None:
+            self._whole = np.asarray(self._work_out())
+        return self._whole if dtype is None else self._whole.astype(dtype)
+
+    def take(self, cells: np.ndarray) -> np.ndarray:
+        """Return the values of cells, given by ``y * width + x`` in the grid."""
+        x, y = cells % self._width - self.box.x0, cells // self._width - self.box.y0
+        height, width = self.box.shape
+        if ((x >= 0) & (x < width) & (y >= 0) & (y < height)).all():
+            return self.inside.take(y * width + x)
+        return np.asarray(self).take(cells)
 
 
 def check_variance(variance: float) -> float:

@@ -8,6 +8,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from numbers import Real
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,36 @@ SQRT2 = math.sqrt(2.0)
 
 # Numbers of cells that a float holds without gaps, with one bit to spare.
 _FARTHEST = 2.0**52
+
+# Grids of fewer cells are worked on whole, and so are those of which a start can reach more than this share: a part would
+# save nothing.
+_LEAST_BOXED, _MOST_REACHED = 2**16, 0.25
+
+
+class Box(NamedTuple):
+    """A rectangle of cells, from (x0, y0) on and up to (x1, y1), which are not in it."""
+
+    x0: int
+    y0: int
+    x1: int
+    y1: int
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """What takes the part out of an array over the grid."""
+        return slice(self.y0, self.y1), slice(self.x0, self.x1)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width."""
+        return self.y1 - self.y0, self.x1 - self.x0
+
+    def grown(self, margin: int, shape: tuple[int, int]) -> Box:
+        """Return the box with so many more cells on each side, as far as an array of that shape goes."""
+        height, width = shape
+        return Box(
+            max(self.x0 - margin, 0), max(self.y0 - margin, 0), min(self.x1 + margin, width), min(self.y1 + margin, height)
+        )
 
 
 class OccupancyGrid:
@@ -335,9 +366,52 @@ class OccupancyGrid:
         moves; with it, those of all eight.
         """
         structure = np.ones((3, 3)) if self._corner_cutting else None
-        labels, _ = ndimage.label(~self._occupied, structure=structure)  # pyright: ignore[reportGeneralTypeIssues]
+        part = self._free_box.slices
+        labels = np.zeros(self.shape, dtype=np.int32)
+        labels[part] = ndimage.label(~self._occupied[part], structure=structure)[0]  # pyright: ignore
         labels.flags.writeable = False
         return labels
+
+    @property
+    def whole(self) -> Box:
+        """The box of all cells."""
+        return Box(0, 0, self.width, self.height)
+
+    @functools.cached_property
+    def _free_box(self) -> Box:
+        """The bounding box of the free cells; all cells if none is free."""
+        xs, ys = (np.flatnonzero(~self._occupied.all(axis=axis)) for axis in (0, 1))
+        return Box(int(xs[0]), int(ys[0]), int(xs[-1]) + 1, int(ys[-1]) + 1) if len(xs) else self.whole
+
+    def box_of(self, start: Sequence[int]) -> Box:
+        """Return the part of the grid that is enough to plan paths from a cell.
+
+        It holds all cells that can be reached from the free cell, and one more on each side, so that every obstacle which is
+        the nearest one of a reachable cell lies in it. A large grid of which little can be reached so takes no more time and
+        memory than a small one. Of any other grid it is the whole.
+        """
+        x, y = start
+        if self._occupied.size < _LEAST_BOXED or self._occupied[y, x]:
+            return self.whole
+        rows, columns = self._region_slices[self.regions[y, x] - 1]
+        left, low = self._free_box[:2]
+        box = Box(left + columns.start, low + rows.start, left + columns.stop, low + rows.stop).grown(1, self.shape)
+        return box if math.prod(box.shape) <= _MOST_REACHED * self._occupied.size else self.whole
+
+    @functools.cached_property
+    def _region_slices(self) -> list:
+        return ndimage.find_objects(self.regions[self._free_box.slices])
+
+    def crop(self, box: Box) -> OccupancyGrid:
+        """Return the grid of the cells in a box, each where it was in metres; the grid itself if these are all."""
+        if box == self.whole:
+            return self
+        x0, y0, yaw = self._origin
+        dx, dy = box.x0 * self._resolution, box.y0 * self._resolution
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        return self.replace(
+            occupied=self._occupied[box.slices], origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw)
+        )
 
     def inflate(self, radius: float) -> OccupancyGrid:
         """Return a grid on which a disc of ``radius`` metres can be planned for as a point.
@@ -372,8 +446,12 @@ class OccupancyGrid:
         # It takes as long to import as the rest of the package, and is used by this method alone.
         from scipy import signal
 
-        hits = signal.oaconvolve(self._occupied.astype(float), disc.astype(float), mode="same")
-        return self.replace(occupied=(hits > 0.5) | self._occupied)
+        # No other cell can change, nor can one further away change any.
+        part = self._free_box.grown(reach, self.shape).slices
+        hits = signal.oaconvolve(self._occupied[part].astype(float), disc.astype(float), mode="same")
+        inflated = self._occupied.copy()
+        inflated[part] |= hits > 0.5
+        return self.replace(occupied=inflated)
 
     def move_graph(self) -> sparse.csr_array:
         """Return the legal moves as a sparse graph, for `scipy.sparse.csgraph`.
@@ -420,12 +498,18 @@ class OccupancyGrid:
         """
         x, y = self.check_cell(start, "start")
         limit = checks.number("limit", limit, 0.0, infinite=True, expected="a length in cells, zero or more", error=GridError)
-        lengths = csgraph.dijkstra(self._graph, indices=y * self.width + x, limit=limit)
-        return np.asarray(lengths).reshape(self.shape)
+        box = self.box_of((x, y))
+        if box not in self._graphs:
+            self._graphs[box] = self.crop(box).move_graph()
+        rows, columns = box.shape
+        found = csgraph.dijkstra(self._graphs[box], indices=(y - box.y0) * columns + x - box.x0, limit=limit)
+        lengths = np.full(self.shape, np.inf)
+        lengths[box.slices] = found.reshape(rows, columns)
+        return lengths
 
     @functools.cached_property
-    def _graph(self):
-        return self.move_graph()
+    def _graphs(self) -> dict[Box, sparse.csr_array]:
+        return {}
 
 
 def check_grid(grid: OccupancyGrid) -> OccupancyGrid:

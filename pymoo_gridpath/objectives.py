@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
@@ -10,8 +11,8 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.fields import check_costs, check_variance, obstacle_potential
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.fields import BoxedField, check_costs, check_variance, obstacle_potential
+from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.paths import TURN_UNIT
 
 
@@ -30,6 +31,8 @@ class Objective(ABC):
         What an axis of a figure says, with the unit.
     penalty_unit : float
         What a penalty of 1 adds to it: 1, or the objective's own step where it counts in larger ones.
+    local : bool
+        Whether the cost of a cell depends on its neighbourhood alone, so that `field_in` does not work out the whole field.
 
     Examples
     --------
@@ -52,10 +55,19 @@ class Objective(ABC):
     name: str
     label: str
     penalty_unit: float = 1.0
+    local: bool = False
 
     def field(self, grid: OccupancyGrid) -> np.ndarray | None:
         """Return the cost of each cell, shape (height, width), if the objective is a sum over visited cells, else None."""
         return None
+
+    def field_in(self, grid: OccupancyGrid, box: Box) -> np.ndarray | None:
+        """Return the cost of each cell in a box, shape (height, width) of the box, or None.
+
+        What `field` says of these cells. Override it too where that can be had without the cost of all other cells.
+        """
+        whole = self.field(grid)
+        return whole if whole is None or box == grid.whole else np.asarray(whole)[box.slices]
 
     @abstractmethod
     def __call__(self, paths, sums: np.ndarray | None) -> np.ndarray:
@@ -114,6 +126,15 @@ class Vulnerability(Objective):
 
     def field(self, grid):
         return obstacle_potential(grid, self.variance)
+
+    @property
+    def local(self) -> bool:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Whether the field is that of this class: one made from it may have another."""
+        return type(self).field is Vulnerability.field
+
+    def field_in(self, grid, box):
+        """Return the potential in a box, from the obstacles in reach."""
+        return obstacle_potential(grid, self.variance, box) if self.local else super().field_in(grid, box)
 
     def __call__(self, paths, sums):
         return paths.total(sums)
@@ -177,15 +198,26 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
     return tuple(made)
 
 
-def field_of(objective: Objective, grid: OccupancyGrid) -> np.ndarray | None:
-    """Return the field of an objective, or None if it has none.
+def field_of(objective: Objective, grid: OccupancyGrid, box: Box | None = None) -> np.ndarray | None:
+    """Return the field of an objective, or the part in a box, or None if it has none.
 
     Raises
     ------
     GridPathError
-        See `pymoo_gridpath.fields.check_costs`.
+        See `pymoo_gridpath.fields.check_costs`; of an objective that is not local, wherever in the grid.
     """
+    box = grid.whole if box is None else box
+    if objective.local and box != grid.whole:
+        return objective.field_in(grid, box)
     given = objective.field(grid)
     if given is None:
         return None
-    return check_costs(f"the field of the objective {shown(objective.name)}", given, grid)
+    return check_costs(f"the field of the objective {shown(objective.name)}", given, grid)[box.slices]
+
+
+def boxed_field_of(objective: Objective, grid: OccupancyGrid, box: Box) -> np.ndarray | BoxedField | None:
+    """Return the field of an objective; if that is more than a box, it is worked out beyond once it is asked for."""
+    inside = field_of(objective, grid, box)
+    if inside is None or box == grid.whole:
+        return inside
+    return BoxedField(inside, box, grid.width, functools.partial(field_of, objective, grid))

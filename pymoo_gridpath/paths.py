@@ -8,6 +8,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.fields import BoxedField
 from pymoo_gridpath.frame import MonotoneFrame, within
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid, check_grid
 from pymoo_gridpath.search.moves import HEADINGS
@@ -358,8 +359,10 @@ def _rows(name: str, rows: np.ndarray, frame: MonotoneFrame, n_columns: int) -> 
     return rows if rows.dtype.kind == "i" and rows.itemsize >= 4 else rows.astype(np.int64)
 
 
-def _summed(field: np.ndarray, *shapes: tuple[int, ...]) -> np.ndarray:
-    """Return a prepared field if it has one of the shapes."""
+def _summed(field: np.ndarray | BoxedField, *shapes: tuple[int, ...]) -> np.ndarray:
+    """Return a prepared field if it has one of the shapes, or is known in a box."""
+    if isinstance(field, BoxedField):
+        return field
     expected = f"numbers of shape {' or '.join(map(str, shapes))}, as the representation prepares them"
     field = checks.array("field", field, expected=expected)
     if field.shape not in shapes:

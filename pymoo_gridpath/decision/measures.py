@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pymoo_gridpath.objectives import Vulnerability, field_of
+from pymoo_gridpath.fields import BoxedField
+from pymoo_gridpath.objectives import Vulnerability, boxed_field_of
 from pymoo_gridpath.representations.base import representation_of
 
 
@@ -23,7 +24,7 @@ class PathMeasures:
 
     Attributes
     ----------
-    field : numpy.ndarray, shape (height, width)
+    field : numpy.ndarray, shape (height, width) of the representation's box
         The potential whose sum is the vulnerability.
     """
 
@@ -32,8 +33,9 @@ class PathMeasures:
         given = [objective for objective in problem.objectives if isinstance(objective, Vulnerability)]
         self.problem = problem
         self._objective = given[0] if given else Vulnerability()
-        self.field = field_of(self._objective, problem.grid)
-        self._sums = problem.representation.prepare(self.field)
+        field = boxed_field_of(self._objective, problem.grid, problem.representation.box)
+        self.field = field.inside if isinstance(field, BoxedField) else field
+        self._sums = problem.representation.prepare(field)
 
     def vulnerability(self, paths) -> np.ndarray:
         """Return the vulnerability of N paths, shape (N,)."""

@@ -20,7 +20,9 @@ def grid_digest(grid: OccupancyGrid) -> str:
 
     Cells go row by row from the bottom, each from the left.
     """
-    return hashlib.sha256(f"{grid.width} {grid.height}\n".encode() + grid.occupied.tobytes()).hexdigest()
+    digest = hashlib.sha256(f"{grid.width} {grid.height}\n".encode())
+    digest.update(np.ascontiguousarray(grid.occupied))
+    return digest.hexdigest()
 
 
 def describe_source(grid: OccupancyGrid) -> dict:

@@ -17,7 +17,7 @@ from pymoo_gridpath.decision import export, provenance
 from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError, counted
-from pymoo_gridpath.fields import clearance
+from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.representations.base import MonotoneRepresentation, representation_of
 from pymoo_gridpath.versions import versions
@@ -192,15 +192,16 @@ class TradeOffSet:
         return cls(problem, X, _meta(problem, settings, []))
 
     def _measure(self, measures: PathMeasures) -> dict[str, np.ndarray]:
-        field = clearance(self.problem.grid)
+        grid, box = self.problem.grid, self.problem.representation.box
+        field = BoxedField(clearance(grid.crop(box)), box, grid.width, functools.partial(clearance, grid))
         length = np.asarray(self.paths.length, dtype=float)
         found = {
             "length": length,
-            "length_m": length * self.problem.grid.resolution,
+            "length_m": length * grid.resolution,
             "vulnerability": measures.vulnerability(self.paths),
             "turn": np.asarray(self.paths.turn),
             "interfering_cells": np.asarray(self.paths.interfering_cells),
-            "clearance": np.array([field[cells[:, 1], cells[:, 0]].min() for cells in self._cells]),
+            "clearance": np.array([field.take(cells @ (1, grid.width)).min() for cells in self._cells]),
         }
         for name, values in zip(self.objective_names, self.F.T, strict=True):
             found.setdefault(name, values)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.grid import SQRT2, OccupancyGrid
+from pymoo_gridpath.grid import SQRT2, Box, OccupancyGrid
 from pymoo_gridpath.objectives import Length, Objective, Turn, field_of
 from pymoo_gridpath.paths import TURN_UNIT
 from pymoo_gridpath.search import DIAGONAL, turn_units
@@ -65,7 +65,7 @@ class Costs(NamedTuple):
         return np.where(decimal, points / np.where(decimal, per_one, 1.0), points * self.unit)
 
 
-def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = None) -> Costs:
+def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = None, box: Box | None = None) -> Costs:
     """Return objectives as whole numbers.
 
     Lengths are counted in 1 / `LENGTH_UNIT` cells and turns in 45 degrees. Costs of cells are counted in a power of two if they
@@ -78,6 +78,8 @@ def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = N
     grid : OccupancyGrid
     usable : numpy.ndarray of bool, shape (n_cells,), optional
         The cells that paths may visit, by default all that are free; the others cost nothing.
+    box : Box, optional
+        The cells that are counted, as in `Moves`; by default all of the grid.
 
     Raises
     ------
@@ -87,9 +89,10 @@ def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = N
     GridPathError
         If a field is no field of costs, see `pymoo_gridpath.objectives.field_of`.
     """
-    usable = ~grid.occupied.ravel() if usable is None else usable
+    box = grid.whole if box is None else box
+    usable = ~grid.occupied[box.slices].ravel() if usable is None else usable
     step = np.zeros((len(objectives), 9, 8), dtype=np.int64)
-    field = np.zeros((len(objectives), grid.width * grid.height), dtype=np.int64)
+    field = np.zeros((len(objectives), len(usable)), dtype=np.int64)
     unit, rounded = np.ones(len(objectives)), np.zeros(len(objectives), dtype=bool)
     for k, objective in enumerate(objectives):
         if type(objective) is Length:
@@ -99,13 +102,13 @@ def integer_costs(objectives, grid: OccupancyGrid, usable: np.ndarray | None = N
             step[k] = turn_units()
             unit[k] = TURN_UNIT
         else:
-            field[k], unit[k], rounded[k] = _field(objective, grid, usable)
+            field[k], unit[k], rounded[k] = _field(objective, grid, usable, box)
     return Costs(step, field, unit, rounded)
 
 
-def _field(objective: Objective, grid: OccupancyGrid, usable: np.ndarray) -> tuple[np.ndarray, float, bool]:
+def _field(objective: Objective, grid: OccupancyGrid, usable: np.ndarray, box: Box) -> tuple[np.ndarray, float, bool]:
     """Return the costs of cells, their unit, and whether they had to be rounded."""
-    values = field_of(objective, grid)
+    values = field_of(objective, grid, box)
     if values is None:
         raise CapabilityError(
             f"the objective {objective.name!r} has no field, so it does not add up along a path and no exact front is known; "

@@ -105,9 +105,11 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     if problem.n_obj > 3:
         raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
     if moves.n_cells >= _MOST_CELLS:
-        raise CapabilityError(f"the grid has {moves.n_cells:,} cells, expected fewer than {_MOST_CELLS:,} for an exact front")
+        raise CapabilityError(
+            f"{moves.n_cells:,} cells of the grid are to be searched, expected fewer than {_MOST_CELLS:,} for an exact front"
+        )
     meter = Meter(budget or Budget())
-    usable, most = ~problem.grid.occupied.ravel(), max_cells(problem)
+    usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)
     parts = _search(problem, moves, usable, meter, set())
     paths, F = _merged(problem, parts, early=bool(meter.message))
     longest = max(map(len, paths), default=0)
@@ -180,7 +182,7 @@ def _search(
     Where costs have to be rounded, the cheapest paths may lose most of theirs. These visit no cell that costs more than they
     do: a search among the cells that are left has a finer unit, and so on. Sets of cells that were searched are not again.
     """
-    costs = integer_costs(problem.objectives, problem.grid, usable)
+    costs = integer_costs(problem.objectives, problem.grid, usable, moves.box)
     start, goal = moves.index(problem.start), moves.index(problem.goal)
     # Searches are quickest with the length first, and turns have to come last.
     order = sorted(range(problem.n_obj), key=lambda k: _place(problem.objectives[k]))

@@ -46,7 +46,7 @@ def read_npy(
     require_file(path)
     try:
         occupied = _load(path)
-    except MapError:
+    except (MapError, MemoryError):
         raise
     except Exception:
         # A damaged header is parsed as Python text and can fail in almost any way.

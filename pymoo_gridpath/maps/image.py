@@ -194,7 +194,7 @@ def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:
                     # Pillow has turned a TIFF by now.
                     orientation = image.getexif().get(ORIENTATION, 1)
                     pixels = _decode(path, image, tags)
-        except MapError:
+        except (MapError, MemoryError):
             raise
         except Image.DecompressionBombError:
             raise MapError(path, f"the image is too large, expected at most {MAX_CELLS} pixels") from None

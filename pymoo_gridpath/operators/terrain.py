@@ -28,7 +28,7 @@ def terrain_of(problem) -> Terrain:
     """
     representation = representation_of(problem)
     if problem not in _TERRAINS:
-        fields = [field_of(objective, problem.grid) for objective in problem.objectives]
+        fields = [field_of(objective, problem.grid, representation.box) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)
         _TERRAINS[problem] = make_terrain(moves, start, goal, [field for field in fields if field is not None])

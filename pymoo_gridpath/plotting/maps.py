@@ -18,7 +18,7 @@ from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import check_field, obstacle_potential
-from pymoo_gridpath.grid import OccupancyGrid, check_grid
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 from pymoo_gridpath.plotting import style
 
 Units = Literal["cells", "m"]
@@ -77,7 +77,7 @@ def plot_map(
             ax = style.new_axes(figure_size(grid))
         _draw_cells(ax, grid, field, units)
         for cell, role, marker, scale in ends:
-            _draw_mark(ax, grid, cell, role, marker, scale, units)
+            _draw_mark(ax, grid, grid, cell, role, marker, scale, units)
         if legend:
             _draw_legend(ax, grid)
     return ax
@@ -93,6 +93,8 @@ def plot_paths(
     ax: Axes | None = None,
 ) -> Axes:
     """Draw the chosen paths of a trade-off set on their map.
+
+    Of a large map of which little can be reached from the start, that part is drawn, see `OccupancyGrid.box_of`.
 
     Parameters
     ----------
@@ -126,21 +128,26 @@ def plot_paths(
     style.check_axes(ax)
     all_paths, legend = checks.flag("all_paths", all_paths), checks.flag("legend", legend)
     problem = trade_off.problem
+    box = drawn_box(trade_off)
+    grid = problem.grid.crop(box)
     if isinstance(potential, bool | np.bool_) and potential:
-        potential = PathMeasures(problem).field
-    _field(problem.grid, potential)
+        field = PathMeasures(problem).field if box == problem.representation.box else obstacle_potential(problem.grid)
+    else:
+        field = _field(problem.grid, potential)
+        field = field if field is None else field[box.slices]
     with style.figure_style(ax):
-        ax = plot_map(problem.grid, potential, units=units, legend=False, ax=ax or style.new_axes(figure_size(problem.grid)))
+        ax = ax or style.new_axes(figure_size(grid))
+        _draw_cells(ax, grid, field, units, box)
         others = [_points(record, units) for record in trade_off if record.index not in groups]
         if others and all_paths:
             label = "other trade-off paths"
             ax.add_collection(LineCollection(others, colors=style.OTHERS, linewidths=0.7, zorder=2, label=label), autolim=False)
-        _draw_chosen(ax, trade_off, groups, units)
+        _draw_chosen(ax, trade_off, grid, groups, units)
         for cell, (role, marker, scale) in zip((problem.start, problem.goal), _ENDS, strict=True):
-            _draw_mark(ax, problem.grid, cell, role, marker, scale, units)
+            _draw_mark(ax, problem.grid, grid, cell, role, marker, scale, units)
         style.warn_infeasible(ax, trade_off)
         if legend:
-            _draw_legend(ax, problem.grid)
+            _draw_legend(ax, grid)
     return ax
 
 
@@ -157,14 +164,14 @@ def _points(record, units: Units) -> np.ndarray:
     return record.cells if units == "cells" else record.points
 
 
-def _draw_cells(ax: Axes, grid: OccupancyGrid, field: np.ndarray | None, units: Units) -> None:
-    """Draw the cells as one image and set the limits of the Axes to the grid's edge."""
+def _draw_cells(ax: Axes, grid: OccupancyGrid, field: np.ndarray | None, units: Units, box: Box | None = None) -> None:
+    """Draw the cells as one image and set the limits of the Axes to the grid's edge; the grid may be a box of a larger one."""
     colors = LinearSegmentedColormap.from_list("potential", style.POTENTIAL)
     top = 0.0 if field is None else field[~grid.occupied].max(initial=0.0)
     share = np.zeros(grid.shape) if field is None or top <= 0 else np.clip(field / top, 0.0, 1.0)
     image = colors(share)[..., :3]
     image[grid.occupied] = to_rgb(style.OCCUPIED)
-    frame = _cells_to_axes(grid, units)
+    frame = _cells_to_axes(grid, units, box or grid.whole)
     # Between the image's cell coordinates and the Axes', so that a turned map needs no resampling here.
     width, height = grid.width, grid.height
     ax.imshow(
@@ -193,18 +200,20 @@ def _draw_cells(ax: Axes, grid: OccupancyGrid, field: np.ndarray | None, units: 
     style.fix_ticks(ax)
 
 
-def _cells_to_axes(grid: OccupancyGrid, units: Units) -> Affine2D:
+def _cells_to_axes(grid: OccupancyGrid, units: Units, box: Box) -> Affine2D:
     """Return the transform from cells, centres at whole numbers, to the coordinates of the Axes."""
     if units == "cells":
-        return Affine2D()
+        return Affine2D().translate(box.x0, box.y0)
     x0, y0, yaw = grid.origin
     return Affine2D().translate(0.5, 0.5).scale(grid.resolution).rotate(yaw).translate(x0, y0)
 
 
-def _draw_mark(ax: Axes, grid: OccupancyGrid, cell, role: str, marker: str, scale: float, units: Units) -> None:
+def _draw_mark(
+    ax: Axes, grid: OccupancyGrid, drawn: OccupancyGrid, cell, role: str, marker: str, scale: float, units: Units
+) -> None:
     cell = grid.check_cell(cell, role)
     x, y = cell if units == "cells" else grid.to_metres(cell)
-    size = float(np.clip(0.5 * _cell_points(ax, grid), 6.0, 10.0)) * scale
+    size = float(np.clip(0.5 * _cell_points(ax, drawn), 6.0, 10.0)) * scale
     ax.plot(
         [x],
         [y],
@@ -220,9 +229,8 @@ def _draw_mark(ax: Axes, grid: OccupancyGrid, cell, role: str, marker: str, scal
     )
 
 
-def _draw_chosen(ax: Axes, trade_off, groups: dict[int, list[str]], units: Units) -> None:
+def _draw_chosen(ax: Axes, trade_off, grid: OccupancyGrid, groups: dict[int, list[str]], units: Units) -> None:
     """Draw the named paths, moved sideways on paper, not in their data, so that shared cells show all of them."""
-    grid = trade_off.problem.grid
     cell = _cell_points(ax, grid)
     width = float(np.clip(0.1 * cell, 1.3, 2.2))
     gap = min(width + 0.3, max(0.22 * cell, 0.5))
@@ -248,6 +256,15 @@ def _draw_chosen(ax: Axes, trade_off, groups: dict[int, list[str]], units: Units
             zorder=4,
             transform=ax.transData + aside,
         )
+
+
+def drawn_box(trade_off) -> Box:
+    """Return the part of the map that is drawn: that which can be reached, unless paths lead elsewhere."""
+    problem = trade_off.problem
+    box = problem.representation.box
+    cells = np.concatenate([record.cells for record in trade_off])
+    inside = (cells >= (box.x0, box.y0)).all() and (cells < (box.x1, box.y1)).all()
+    return box if inside else problem.grid.whole
 
 
 def figure_size(grid: OccupancyGrid) -> tuple[float, float]:

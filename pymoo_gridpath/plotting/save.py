@@ -18,7 +18,7 @@ from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.convergence import as_recorders, plot_convergence
 from pymoo_gridpath.plotting.fronts import as_reference, plot_front
-from pymoo_gridpath.plotting.maps import Units, figure_size, plot_paths
+from pymoo_gridpath.plotting.maps import Units, drawn_box, figure_size, plot_paths
 from pymoo_gridpath.plotting.style import STYLE
 
 # What each format writes about the time of writing, which would make equal figures differ.
@@ -102,7 +102,7 @@ def save_figures(
 
 def _figures(trade_off, recorders, reference, units: Units) -> dict[str, Figure]:
     """Return the figures by name, unknown to pyplot, which would keep them in memory."""
-    figures = {"map": Figure(figsize=figure_size(trade_off.problem.grid), layout="constrained")}
+    figures = {"map": Figure(figsize=figure_size(trade_off.problem.grid.crop(drawn_box(trade_off))), layout="constrained")}
     plot_paths(trade_off, units=units, ax=figures["map"].add_subplot())
     names = trade_off.objective_names
     if len(names) == 3:

@@ -15,7 +15,7 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarnin
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.frame import Axis, check_axis
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
-from pymoo_gridpath.objectives import Objective, Turn, field_of, make_objectives
+from pymoo_gridpath.objectives import Objective, Turn, boxed_field_of, make_objectives
 from pymoo_gridpath.paths import check_paths
 from pymoo_gridpath.representations import CellSequence, Representation, default_representation, make_representation
 
@@ -139,7 +139,8 @@ class GridPathProblem(Problem):
         self.penalty = checks.number("penalty", given, 0.0, above=True, expected="a positive number")
         self.potential_limit = self._check_limit(potential_limit)
         check_axis(axis)
-        fields = [field_of(objective, grid) for objective in self.objectives]
+        box = grid.box_of(self.start)
+        fields = [boxed_field_of(objective, grid, box) for objective in self.objectives]
         if representation is None:
             representation = default_representation(grid.corner_cutting, axis)
         if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":

@@ -12,9 +12,9 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.fields import check_field
+from pymoo_gridpath.fields import BoxedField, check_field
 from pymoo_gridpath.frame import Axis, MonotoneFrame
-from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.grid import Box, Cell, OccupancyGrid
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
 from pymoo_gridpath.search.moves import HEADINGS, Moves
 from pymoo_gridpath.search.sequences import Sequences, check_sequences
@@ -47,10 +47,15 @@ class Representation(ABC):
     start: Cell
     goal: Cell
 
+    @functools.cached_property
+    def box(self) -> Box:
+        """The part of the grid in which legal paths lie, see `OccupancyGrid.box_of`; searches work on it alone."""
+        return self.grid.box_of(self.start)
+
     @property
     @abstractmethod
     def moves(self) -> Moves:
-        """The legal steps of the paths that can be coded."""
+        """The legal steps of the paths that can be coded, in the `box`."""
 
     @abstractmethod
     def from_sequences(self, sequences: Sequences) -> np.ndarray:
@@ -59,7 +64,7 @@ class Representation(ABC):
         Parameters
         ----------
         sequences : Sequences
-            N paths from the start to the goal.
+            N paths from the start to the goal, by the indices of cells that `moves` has.
 
         Returns
         -------
@@ -85,9 +90,17 @@ class Representation(ABC):
         Returns
         -------
         Sequences
-            N paths; no cell follows itself.
+            N paths, by the indices of cells that `moves` has, -1 for those outside the box; no cell follows itself but these.
         """
-        return self.decode(X).sequences
+        return self._in_box(self.decode(X))
+
+    def _checked_ends(self, sequences: Sequences) -> Sequences:
+        return check_ends(sequences, self, self.moves.index(self.start), self.moves.index(self.goal), self.moves.n_cells)
+
+    def _in_box(self, paths) -> Sequences:
+        """Return the cells that decoded paths visit by the indices that `moves` has."""
+        cells, offsets = paths.sequences
+        return Sequences(self.moves.from_grid(cells), offsets)
 
     @abstractmethod
     def decode(self, X: np.ndarray) -> ColumnPaths | CellPaths:
@@ -208,7 +221,7 @@ class MonotoneRepresentation(Representation):
         If these lose the cost of a cell, as those of cheap cells beside dear ones, it is returned by the index of the cell, in
         float, shape (height * width,).
         """
-        field = check_field("field", field, self.grid).astype(float)
+        field = check_field("field", np.asarray(field) if isinstance(field, BoxedField) else field, self.grid).astype(float)
         with np.errstate(invalid="ignore", over="ignore"):
             sums = self.frame.prefix_sums(field)
             if np.array_equal(np.diff(sums, axis=1), self.frame.columns(field)):
@@ -220,7 +233,7 @@ class MonotoneRepresentation(Representation):
         """The legal steps along the five headings that do not go back: forward, diagonally forward, and across."""
         k = 0 if self.frame.axis == "x" else 1
         forward = np.sign(self.goal[k] - self.start[k]) * HEADINGS[:, k] >= 0
-        return Moves(self.grid, np.flatnonzero(forward).tolist())
+        return Moves(self.grid, np.flatnonzero(forward).tolist(), self.box)
 
     def from_sequences(self, sequences: Sequences) -> np.ndarray:
         """Return the rows of genes that code paths given by the cells that they visit.
@@ -245,7 +258,7 @@ class MonotoneRepresentation(Representation):
 
     def _column_paths(self, sequences: Sequences) -> ColumnPaths:
         """Return the paths that enter and leave each column where the given ones do."""
-        sequences = check_ends(sequences, self)
+        sequences = self._checked_ends(sequences)
         frame, shape = self.frame, (len(sequences.lengths), self.frame.n_columns)
         column, row = frame.from_cells(self.moves.cells(sequences.cells))
         first = np.zeros(len(column), dtype=bool)
@@ -333,10 +346,14 @@ class MonotoneRepresentation(Representation):
         """Return X with the genes changed where ``fixed`` moves differ from ``moves``."""
 
 
-def check_ends(sequences: Sequences, representation: Representation) -> Sequences:
-    """Return sequences if each leads from the start to the goal of a representation, else raise GridPathError."""
-    sequences = check_sequences(sequences, representation.moves.n_cells)
-    first, last = (representation.moves.index(cell) for cell in (representation.start, representation.goal))
+def check_ends(sequences: Sequences, representation: Representation, first: int, last: int, n_cells: int) -> Sequences:
+    """Return sequences if each leads from the start to the goal of a representation, the cells first and last of n_cells.
+
+    Raises
+    ------
+    GridPathError
+    """
+    sequences = check_sequences(sequences, n_cells)
     cells, offsets, lengths = *sequences, sequences.lengths
     if (lengths < 1).any() or (cells[offsets[:-1]] != first).any() or (cells[offsets[1:] - 1] != last).any():
         raise GridPathError(

@@ -13,8 +13,8 @@ from scipy.sparse import csgraph
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.fields import check_costs, check_field, obstacle_potential
-from pymoo_gridpath.grid import OccupancyGrid, check_grid
+from pymoo_gridpath.fields import BoxedField, check_costs, check_field, obstacle_potential
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 from pymoo_gridpath.paths import CellPaths, check_paths
 from pymoo_gridpath.representations.base import Representation, check_ends
 from pymoo_gridpath.search.moves import Moves
@@ -95,17 +95,17 @@ class CellSequence(Representation):
         self.grid = check_grid(grid)
         self.start, self.goal = grid.check_query(start, goal)
         spare = checks.number("spare", spare, 1.0, expected="a factor of 1 or more")
-        self.max_cells = _room(grid, self.moves.index(self.start), self.moves.index(self.goal), max_cells, fields, spare)
+        self.max_cells = _room(self, max_cells, fields, spare)
         self.n_var = self.max_cells
         self.xl = np.zeros(self.n_var, dtype=int)
-        self.xu = np.full(self.n_var, self.moves.n_cells - 1)
-        self.xl[0] = self.xu[0] = self.moves.index(self.start)
-        self.xl[-1] = self.xu[-1] = self.moves.index(self.goal)
+        self.xu = np.full(self.n_var, grid.occupied.size - 1)
+        self.xl[0] = self.xu[0] = self.start[1] * grid.width + self.start[0]
+        self.xl[-1] = self.xu[-1] = self.goal[1] * grid.width + self.goal[0]
 
     @functools.cached_property
     def moves(self) -> Moves:
         """The legal steps, along all eight headings."""
-        return Moves(self.grid)
+        return Moves(self.grid, box=self.box)
 
     def decode(self, X: np.ndarray) -> CellPaths:
         """Return the paths that the rows of X code.
@@ -124,7 +124,8 @@ class CellSequence(Representation):
 
     def encode(self, paths) -> np.ndarray:
         """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""
-        return self.from_sequences(check_paths(paths).sequences)
+        sequences = check_paths(paths).sequences
+        return self._rows(check_ends(sequences, self, int(self.xl[0]), int(self.xl[-1]), self.grid.occupied.size))
 
     def fits(self, sequences: Sequences) -> np.ndarray:
         """Return which paths have no more cells than a row has genes, bool, shape (N,)."""
@@ -148,19 +149,23 @@ class CellSequence(Representation):
         GridPathError
             If a path leads from or to another cell, or has more than ``max_cells`` cells even without loops.
         """
-        sequences = check_ends(sequences, self)
-        fits = self.fits(sequences)
+        cells, offsets = self._checked_ends(sequences)
+        return self._rows(Sequences(self.moves.to_grid(cells), offsets))
+
+    def _rows(self, sequences: Sequences) -> np.ndarray:
+        """Return the rows of genes that code paths given by the indices of cells in the whole grid."""
+        fits = sequences.lengths <= self.max_cells
         if fits.all():
             return self._padded(sequences)
         X = np.empty((len(fits), self.n_var), dtype=np.int64)
         X[fits] = self._padded(sequences.take(fits))
-        X[~fits] = self._padded(cut_loops(sequences.take(~fits), self.moves.n_cells))
+        X[~fits] = self._padded(cut_loops(sequences.take(~fits), self.grid.occupied.size))
         return X
 
     def _padded(self, sequences: Sequences) -> np.ndarray:
         """Return the rows of paths, filled up with the goal."""
         lengths = sequences.lengths
-        if not self.fits(sequences).all():
+        if (lengths > self.max_cells).any():
             raise GridPathError(
                 f"a path visits {lengths.max()} cells, expected at most {self.max_cells}, the max_cells of the {self.name} "
                 f"representation; give CellSequence a larger one"
@@ -169,8 +174,10 @@ class CellSequence(Representation):
         X[np.arange(self.n_var) < lengths[:, None]] = sequences.cells
         return X
 
-    def prepare(self, field: np.ndarray) -> np.ndarray:
+    def prepare(self, field: np.ndarray | BoxedField) -> np.ndarray | BoxedField:
         """Return a field over the grid by the index of the cell, shape (height * width,)."""
+        if isinstance(field, BoxedField):
+            return field
         return check_field("field", field, self.grid).astype(float).ravel()
 
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
@@ -195,13 +202,15 @@ class CellSequence(Representation):
         repaired[~broken] = self.encode(paths[~broken])
         if broken.any():
             ends = self.moves.index(self.start), self.moves.index(self.goal)
-            repaired[broken] = self.from_sequences(mend(paths[broken].sequences, self.moves, *ends, self.max_cells))
+            repaired[broken] = self.from_sequences(mend(self._in_box(paths[broken]), self.moves, *ends, self.max_cells))
         return repaired
 
 
-def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fields, spare: float) -> int:
+def _room(coding: CellSequence, max_cells: int | None, fields, spare: float) -> int:
     """Return ``max_cells``, checked, or its default."""
-    graph = grid.move_graph()
+    grid, box = coding.grid, coding.box
+    start, goal = coding.moves.index(coding.start), coding.moves.index(coding.goal)
+    graph = grid.crop(box).move_graph()
     _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
     least = 1
     cell = goal
@@ -209,11 +218,13 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
         cell = before[cell]
         least += 1
     if max_cells is None:
-        reachable = np.count_nonzero(grid.regions == grid.regions.flat[start])
-        fields = [check_costs("a field", field, grid) for field in checks.items("fields", fields, "costs of cells")] or [
-            obstacle_potential(grid)
+        regions = grid.regions[box.slices]
+        reachable = np.count_nonzero(regions == regions.flat[start])
+        given = [
+            field if isinstance(field, BoxedField) else check_costs("a field", field, grid)
+            for field in checks.items("fields", fields, "costs of cells")
         ]
-        fields = [field / (field.max() or 1.0) for field in fields]
+        fields = [_scaled(field, box, alone=len(given) == 1) for field in given] or [obstacle_potential(grid, box=box)]
         # Of several together, too: a path that costs nothing in either may be longer than those that cost nothing in one.
         sizes = range(1, 1 + (len(fields) if len(fields) <= _MOST_TOGETHER else 1))
         together = (np.sum(some, axis=0) for n in sizes for some in itertools.combinations(fields, n))
@@ -221,6 +232,19 @@ def _room(grid: OccupancyGrid, start: int, goal: int, max_cells: int | None, fie
         return min(math.ceil(spare * max(safest, math.ceil(1.5 * least) + 8)), int(reachable))
     expected = f"a whole number of at least {least}, the cells of a shortest path"
     return checks.whole("max_cells", max_cells, least, MOST_GENES, expected=expected)
+
+
+def _scaled(field: np.ndarray | BoxedField, box: Box, alone: bool) -> np.ndarray:
+    """Return the part of a field in a box, relative to the largest cost of the whole grid.
+
+    Where it stands ``alone``, the scale does not matter, and no other part need be known.
+    """
+    if isinstance(field, BoxedField) and alone:
+        inside = whole = field.inside
+    else:
+        whole = np.asarray(field)
+        inside = whole[box.slices]
+    return inside / (whole.max() or 1.0)
 
 
 def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal: int) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import Box, OccupancyGrid
 
 #: The step (dx, dy) of each heading, counter-clockwise from the right in steps of 45 degrees; odd ones are diagonal.
 HEADINGS = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)])
@@ -36,18 +36,24 @@ def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 class Moves:
-    """The legal steps from each cell of a grid.
+    """The legal steps from each cell of a grid, or of a part of it.
 
-    Cell (x, y) has the index ``y * width + x``, as in `OccupancyGrid.move_graph`.
+    Cell (x, y) of the whole grid has the index ``y * width + x``, as in `OccupancyGrid.move_graph`. In a box, cells are counted
+    in the same way from its own corner.
 
     Parameters
     ----------
     grid : OccupancyGrid
     headings : iterable of int, optional
         Indices into `HEADINGS` of the steps to allow; all eight by default.
+    box : Box, optional
+        The cells to step on; all by default.
 
     Attributes
     ----------
+    box : Box
+    width, height : int
+        Of the box.
     legal : numpy.ndarray of uint8, shape (n_cells,)
         Bit m is set where the step along heading m stays on the grid, ends in a free cell and cuts no corner that the grid
         forbids to cut. No bit is set in occupied cells.
@@ -55,11 +61,14 @@ class Moves:
         What each step adds to the index of a cell.
     """
 
-    def __init__(self, grid: OccupancyGrid, headings: Iterable[int] = range(8)):
-        self.width, self.height = grid.width, grid.height
+    def __init__(self, grid: OccupancyGrid, headings: Iterable[int] = range(8), box: Box | None = None):
+        self.box = grid.whole if box is None else box
+        self._grid_width = grid.width
+        self._is_whole = self.box == grid.whole
+        self.height, self.width = self.box.shape
         # A rim of occupied cells stands for the edge of the grid.
-        free = np.pad(~grid.occupied, 1)
-        legal = np.zeros(grid.shape, dtype=np.uint8)
+        free = np.pad(~grid.occupied[self.box.slices], 1)
+        legal = np.zeros(self.box.shape, dtype=np.uint8)
         for m in headings:
             dx, dy = HEADINGS[m]
             possible = self._shifted(free, 0, 0) & self._shifted(free, dx, dy)
@@ -67,7 +76,7 @@ class Moves:
                 possible &= self._shifted(free, dx, 0) & self._shifted(free, 0, dy)
             legal |= possible.astype(np.uint8) << np.uint8(m)
         self.legal = legal.ravel()
-        self.offsets = (HEADINGS[:, 1] * grid.width + HEADINGS[:, 0]).astype(np.int64)
+        self.offsets = (HEADINGS[:, 1] * self.width + HEADINGS[:, 0]).astype(np.int64)
 
     def _shifted(self, padded: np.ndarray, dx: int, dy: int) -> np.ndarray:
         return padded[1 + dy : 1 + dy + self.height, 1 + dx : 1 + dx + self.width]
@@ -90,13 +99,27 @@ class Moves:
 
     @property
     def n_cells(self) -> int:
-        """Number of cells of the grid."""
+        """Number of cells of the box."""
         return self.width * self.height
 
     def index(self, cell) -> int:
-        """Return the index of a cell (x, y)."""
-        return int(cell[1]) * self.width + int(cell[0])
+        """Return the index of a cell (x, y) of the grid."""
+        return (int(cell[1]) - self.box.y0) * self.width + int(cell[0]) - self.box.x0
 
     def cells(self, index: np.ndarray) -> np.ndarray:
-        """Return the cells (x, y) of indices, shape (..., 2)."""
-        return np.stack([index % self.width, index // self.width], axis=-1)
+        """Return the cells (x, y) of the grid that have these indices, shape (..., 2)."""
+        return np.stack([index % self.width + self.box.x0, index // self.width + self.box.y0], axis=-1)
+
+    def from_grid(self, index: np.ndarray) -> np.ndarray:
+        """Return the indices of cells that are given by their indices in the whole grid; -1 for those outside the box."""
+        if self._is_whole:
+            return index
+        x, y = index % self._grid_width - self.box.x0, index // self._grid_width - self.box.y0
+        inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
+        return np.where(inside, y * self.width + x, -1)
+
+    def to_grid(self, index: np.ndarray) -> np.ndarray:
+        """Return the indices in the whole grid of cells of the box, the inverse of `from_grid`."""
+        if self._is_whole:
+            return index
+        return (index // self.width + self.box.y0) * self._grid_width + index % self.width + self.box.x0

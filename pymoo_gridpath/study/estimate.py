@@ -8,7 +8,9 @@ from typing import Any
 
 from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.execute import needed_for
 from pymoo_gridpath.study.plan import Plan, PlannedRun, Task, is_exact
 
 # Share of the time of a measurement that getting ready for it may take: compiled functions are loaded in the first one.
@@ -78,9 +80,9 @@ def estimate(plan: Plan, runs: Iterable[PlannedRun] | None = None, max_seconds: 
             found, is_open = _measure(task, share)
         except Exception as error:
             label = "the exact front" if algorithm is None else repr(plan.algorithms[algorithm].label)
-            raise GridPathError(
-                f"{label} fails on the problem {plan.problems[members[0].problem].label!r}: {type(error).__name__}: {error}"
-            ) from error
+            text = f"{type(error).__name__}: {' '.join(str(error).split())}"
+            why = want_of_memory(needed_for(task)) if is_want_of_memory(error) else text
+            raise GridPathError(f"{label} fails on the problem {plan.problems[members[0].problem].label!r}: {why}") from error
         seconds.append(found)
         counts.append(len(members))
         open_ended |= is_open

@@ -17,9 +17,11 @@ import numpy as np
 from pymoo.core.callback import Callback
 
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
+from pymoo_gridpath.memory import is_want_of_memory, needed, want_of_memory
 from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
-from pymoo_gridpath.study.plan import Task
+from pymoo_gridpath.study.plan import Task, is_exact
 from pymoo_gridpath.study.record import History, RunRecord, to_bytes
+from pymoo_gridpath.study.specification.canonical import n_cells
 from pymoo_gridpath.versions import versions
 
 #: Most records of a history: beyond that, every second one is dropped, and from then on half as many are made.
@@ -36,7 +38,7 @@ def execute(task: Task) -> bytes:
     """Carry out one run and return the bytes of its record, see `to_bytes`.
 
     X, F and the history but for its seconds depend on the task alone. A run that raises gives a record with status "failed" and
-    the traceback.
+    the traceback, or with a sentence if memory ran out.
     """
     started, begin = _now(), time.perf_counter()
     try:
@@ -44,7 +46,15 @@ def execute(task: Task) -> bytes:
     except (Exception, SystemExit) as error:
         if is_ctrl_c(error):
             raise KeyboardInterrupt from error
-        return failed_run(task, traceback.format_exc(), started, time.perf_counter() - begin)
+        message = want_of_memory(needed_for(task)) if is_want_of_memory(error) else traceback.format_exc()
+    return failed_run(task, message, started, time.perf_counter() - begin)
+
+
+def needed_for(task: Task) -> str:
+    """Return what a run costs in memory, in words."""
+    problem = task.problem
+    turn = "turn" in problem["objectives"]
+    return needed(problem["representation"], n_cells(problem["grid"]), is_exact(task.algorithm), turn)
 
 
 def failed_run(task: Task, message: str, started: str | None = None, seconds: float = 0.0) -> bytes:

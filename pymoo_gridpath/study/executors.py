@@ -18,6 +18,8 @@ from pymoo_gridpath.errors import GridPathError
 
 # What numpy's and scipy's libraries and numba read when they are loaded.
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS", "NUMBA_NUM_THREADS")
+# How often processes are started that end before they have done anything.
+_STARTS = 3
 # Tasks kept in flight with an executor that does not say how many workers it has.
 _UNKNOWN_CAPACITY = 64
 
@@ -89,6 +91,7 @@ class LocalProcesses(StudyExecutor):
         self.capacity = 2 * n_processes
         self._pool: ProcessPoolExecutor | None = None
         self._workers: list = []
+        self._has_worked = False
 
     def submit(self, fn: Callable, /, *args, **kwargs) -> Future:
         """Have a function called in one of the processes, and return the future of what it returns."""
@@ -115,26 +118,47 @@ class LocalProcesses(StudyExecutor):
             self._pool.shutdown(wait, cancel_futures=cancel_futures)
 
     def _started(self) -> ProcessPoolExecutor:
+        for _ in range(_STARTS):
+            pool, codes = self._start()
+            if pool is not None:
+                self._has_worked = True
+                return pool
+            # Python itself ends a process with this code if the script has no guard; one that is killed has another.
+            if 1 in codes and not self._has_worked:
+                raise GridPathError(
+                    "the local processes ended as soon as they were started; a script that runs a study in processes needs "
+                    "if __name__ == '__main__': around what it does"
+                )
+        ends = ", ".join(sorted({f"signal {-code}" if code < 0 else f"code {code}" for code in codes})) or "no code"
+        raise GridPathError(
+            f"the local processes ended as soon as they were started, {_STARTS} times (by {ends}), as when memory runs out or "
+            "something kills them; what is stored is whole, and running again goes on from there"
+        )
+
+    def _start(self) -> tuple[ProcessPoolExecutor | None, list[int]]:
+        """Return processes that work, or None and the exit codes of those that have ended at once."""
         pool = ProcessPoolExecutor(self.n_processes, multiprocessing.get_context("spawn"), _begin_worker)
         others = set(multiprocessing.active_children())
-        with _environment_of_workers():
-            # A process is started with each of them.
-            probes = [pool.submit(os.getpid) for _ in range(self.n_processes)]
-        self._workers = [child for child in multiprocessing.active_children() if child not in others]
+        self._workers = []
         try:
+            with _environment_of_workers():
+                try:
+                    # A process is started with each of them.
+                    probes = [pool.submit(os.getpid) for _ in range(self.n_processes)]
+                finally:
+                    self._workers = [child for child in multiprocessing.active_children() if child not in others]
             for probe in probes:
                 probe.result()
-        except BaseException as error:
+        except BrokenExecutor:
+            # It ends the others, and waits for all.
+            pool.shutdown(wait=True)
+            return None, [worker.exitcode for worker in self._workers if worker.exitcode is not None]
+        except BaseException:  # such as Ctrl-C
             for worker in self._workers:
                 worker.kill()
             pool.shutdown(wait=False)
-            if not isinstance(error, BrokenExecutor):
-                raise  # such as Ctrl-C
-            raise GridPathError(
-                "the local processes ended as soon as they were started; a script that runs a study in processes needs "
-                "if __name__ == '__main__': around what it does"
-            ) from None
-        return pool
+            raise
+        return pool, []
 
 
 @contextlib.contextmanager

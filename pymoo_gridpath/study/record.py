@@ -7,6 +7,7 @@ import io
 import json
 import struct
 import zipfile
+import zlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -169,17 +170,20 @@ def from_bytes(data: bytes, genes: bool = True) -> RunRecord:
         If the bytes are not what was written.
     """
     meta = read_meta(data)
-    kind = np.dtype(meta.pop("dtype"))
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        arrays = {
-            name.removesuffix(".npy"): np.lib.format.read_array(io.BytesIO(archive.read(name)), allow_pickle=False)
-            for name in archive.namelist()
-            if name != _META and (genes or name != "X.npy")
-        }
-    history = _unpacked(arrays) if "records" in arrays else None
     del meta["format"]
-    X = arrays["X"].astype(kind, copy=False) if genes else np.empty((len(arrays["F"]), 0), dtype=kind)
-    return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history)
+    try:
+        kind = np.dtype(meta.pop("dtype"))
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            arrays = {
+                name.removesuffix(".npy"): np.lib.format.read_array(io.BytesIO(archive.read(name)), allow_pickle=False)
+                for name in archive.namelist()
+                if name != _META and (genes or name != "X.npy")
+            }
+        history = _unpacked(arrays) if "records" in arrays else None
+        X = arrays["X"].astype(kind, copy=False) if genes else np.empty((len(arrays["F"]), 0), dtype=kind)
+        return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history)
+    except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, TypeError):
+        raise DamagedRecordError("the run has a checksum and no arrays, expected what a study writes") from None
 
 
 def read_meta(data: bytes) -> dict[str, Any]:
@@ -195,11 +199,18 @@ def read_meta(data: bytes) -> dict[str, Any]:
         raise DamagedRecordError("the run does not end with its checksum, expected a file that was written to its end")
     if hashlib.sha256(memoryview(data)[:size]).hexdigest().encode() != data[size + len(_SEAL) :]:
         raise DamagedRecordError("the run does not match its checksum, expected the bytes that were written")
-    # The header of the first member of a zip archive, section 4.3.7 of its specification.
-    *_, length, name, extra = struct.unpack_from("<4s5H3L2H", data)
-    begin = 30 + name + extra
-    meta = json.loads(data[begin : begin + length])
-    if meta["format"] > FORMAT:
+    try:
+        # The header of the first member of a zip archive, section 4.3.7 of its specification.
+        *_, length, name, extra = struct.unpack_from("<4s5H3L2H", data)
+        begin = 30 + name + extra
+        meta = json.loads(data[begin : begin + length])
+        missing = {"format", "key", "status", "message", "complete", "versions", "dtype"} - set(meta)
+        later = not missing and meta["format"] > FORMAT
+    except (struct.error, ValueError, TypeError):
+        raise DamagedRecordError("the run has a checksum and no description, expected what a study writes") from None
+    if missing:
+        raise DamagedRecordError(f"the run does not say its {sorted(missing)[0]}, expected what a study writes")
+    if later:
         raise GridPathError(
             f"the run {meta['key']} has format {meta['format']}, expected at most {FORMAT}; a later pymoo_gridpath wrote it"
         )

@@ -315,9 +315,11 @@ def _about_plan_before(store: Store, plan: Plan) -> Iterable[str]:
 def _about_stored(found: StoredRuns) -> Iterable[str]:
     if found.damaged:
         yield (
-            f"{_count(len(found.damaged), 'stored run')} found damaged, set aside in {found.damaged[0].parent} and carried "
-            "out again"
+            f"{_count(len(found.damaged), 'stored run')} found damaged, set aside in {found.damaged[0].parent} (such as "
+            f"{found.damaged[0].name}) and carried out again"
         )
+    for path in found.odd:
+        yield f"{path.name} is nothing that a study writes where it stood, and was set aside in {path.parent}"
     here = versions()
     differences: Counter[str] = Counter()
     n_other = 0

@@ -6,6 +6,7 @@ import contextlib
 import errno
 import json
 import os
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -19,6 +20,8 @@ from pymoo_gridpath.study.lock import locked
 from pymoo_gridpath.study.plan import Plan
 from pymoo_gridpath.study.record import DamagedRecordError, RunRecord, from_bytes, read_meta
 
+# Folders of runs are named by the first two digits of their keys.
+_PART = re.compile("[0-9a-f]{2}")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 # Keys are hashes of what a run is; longer names of files are none on most systems.
@@ -36,7 +39,10 @@ class StoredRuns:
     missing : list of str
         Keys of runs that are not there, damaged ones among them.
     damaged : list of pathlib.Path
-        Files that are not what was written; where they were moved to if they were set aside.
+        What stands under the names of runs and is not what was written: damaged files, folders, links that lead nowhere. Where
+        it was moved to if it was set aside.
+    odd : list of pathlib.Path
+        What else no study writes and stands in its way, such as a folder with the name of an unfinished file; as ``damaged``.
     failed : list of str
         Keys of runs that are there and failed.
     incomplete : list of str
@@ -48,6 +54,7 @@ class StoredRuns:
     meta: dict[str, dict[str, Any]] = field(default_factory=dict)
     missing: list[str] = field(default_factory=list)
     damaged: list[Path] = field(default_factory=list)
+    odd: list[Path] = field(default_factory=list)
     failed: list[str] = field(default_factory=list)
     incomplete: list[str] = field(default_factory=list)
     versions: Counter = field(default_factory=Counter)
@@ -112,10 +119,12 @@ class Store:
         ----------
         keys : iterable of str
         set_aside : bool, default False
-            Whether damaged files are moved to ``damaged/``.
+            Whether damaged files, and what else stands in the way, are moved to ``damaged/``.
         """
-        present = self._present()
         found = StoredRuns()
+        for path in list(self._odd()):
+            found.odd.append(self._set_aside(path) if set_aside else path)
+        present = self._present()
         for key in checks.names("keys", keys):
             if key not in present:
                 found.missing.append(key)
@@ -126,7 +135,7 @@ class Store:
                     raise DamagedRecordError(f"the file of run {key} holds the run {meta['key']}")
             except DamagedRecordError:
                 found.missing.append(key)
-                found.damaged.append(self._set_aside(key) if set_aside else self.path(key))
+                found.damaged.append(self._set_aside(self.path(key)) if set_aside else self.path(key))
                 continue
             failed = meta["status"] == "failed"
             # No more, since a study may have hundreds of thousands.
@@ -148,7 +157,10 @@ class Store:
             self._write(file, study.encode())
         elif file.exists():
             # It belonged to another plan.
-            file.unlink()
+            try:
+                file.unlink()
+            except OSError as error:
+                raise GridPathError(f"{file} cannot be removed: {error.strerror}") from None
 
     def read_plan(self) -> Plan:
         """Return the plan, without the grids of maps.
@@ -196,20 +208,36 @@ class Store:
                     "folder"
                 ) from None
             except OSError as error:
-                raise GridPathError(f"{self.folder} cannot be written to: {error.strerror}") from None
+                where = f" ({error.filename})" if error.filename not in (None, str(self.folder)) else ""
+                raise GridPathError(f"{self.folder} cannot be written to: {error.strerror}{where}") from None
             yield held
 
     # -- parts ------------------------------------------------------------------------------------------------------------
 
     def _present(self) -> set[str]:
-        runs = self.folder / "runs"
-        if not runs.is_dir():
-            return set()
-        names = (file.name for part in os.scandir(runs) if part.is_dir() for file in os.scandir(part.path))
+        names = (file.name for part in self._parts() for file in os.scandir(part))
         return {name.removesuffix(".npz") for name in names if name.endswith(".npz")}
+
+    def _parts(self) -> list[Path]:
+        """Return the folders that hold the runs."""
+        runs = self.folder / "runs"
+        return [part for part in runs.iterdir() if part.is_dir()] if runs.is_dir() else []
+
+    def _odd(self) -> Iterator[Path]:
+        """Yield what is no folder where runs are to stand, and folders named like unfinished files."""
+        runs = self.folder / "runs"
+        if os.path.lexists(runs) and not runs.is_dir():
+            yield runs
+        elif runs.is_dir():
+            yield from (part for part in runs.iterdir() if _PART.fullmatch(part.name) and not part.is_dir())
+        for folder in (self.folder, *self._parts()):
+            if folder.is_dir():
+                yield from (Path(entry.path) for entry in os.scandir(folder) if _is_unfinished(entry) and entry.is_dir())
 
     def _read(self, key: str) -> bytes:
         path = self.path(key)
+        if os.path.lexists(path) and not path.is_file():
+            raise DamagedRecordError(f"{path} is a folder, or a link that leads nowhere, expected the file of a run")
         try:
             return path.read_bytes()
         except FileNotFoundError:
@@ -225,21 +253,26 @@ class Store:
             hint = "; what is stored is whole, and running again goes on from there" if error.errno in _FULL else ""
             raise GridPathError(f"{path} cannot be written: {error.strerror}{hint}") from None
 
-    def _set_aside(self, key: str) -> Path:
-        """Move a damaged file out of the way and return where to."""
+    def _set_aside(self, path: Path) -> Path:
+        """Move what is damaged out of the way and return where to."""
         folder = self.folder / "damaged"
-        make_folder(folder)
-        number, target = 1, folder / f"{key}.npz"
-        while target.exists():
-            number += 1
-            target = folder / f"{key}-{number}.npz"
-        os.replace(self.path(key), target)
+        try:
+            make_folder(folder)
+            number, target = 1, folder / path.name
+            while os.path.lexists(target):
+                number += 1
+                target = folder / f"{path.stem}-{number}{path.suffix}"
+            os.replace(path, target)
+        except OSError as error:
+            raise GridPathError(f"{path} is damaged and cannot be moved to {folder}: {error.strerror}") from None
         return target
 
     def _remove_unfinished(self) -> None:
-        runs = self.folder / "runs"
-        folders = [self.folder, *(part for part in (runs.iterdir() if runs.is_dir() else ()) if part.is_dir())]
-        for folder in folders:
+        for folder in (self.folder, *self._parts()):
             for entry in os.scandir(folder):
-                if UNFINISHED.fullmatch(entry.name):
+                if _is_unfinished(entry) and not entry.is_dir():
                     os.unlink(entry.path)
+
+
+def _is_unfinished(entry: os.DirEntry) -> bool:
+    return UNFINISHED.fullmatch(entry.name) is not None

@@ -146,6 +146,43 @@ def test_a_script_without_a_guard_is_told_about_it(tmp_path, plan):
     assert "ended as soon as they were started; a script that runs a study in processes needs if __name__" in answer.stderr
 
 
+class KilledAtOnce(LocalProcesses):
+    """Processes the first of which are killed while they start, as when memory runs out, so many times."""
+
+    def __init__(self, n_processes: int, times: int):
+        super().__init__(n_processes)
+        self.times = times
+
+    def _start(self):
+        self.times -= 1
+        if self.times < 0:
+            return super()._start()
+        threading.Thread(target=self._kill, args=(psutil.Process().children(),)).start()
+        return super()._start()
+
+    def _kill(self, before):
+        wait_until(lambda: set(psutil.Process().children()) - set(before))
+        for child in set(psutil.Process().children()) - set(before):
+            # That of Python that watches over shared things is none of them.
+            if "resource_tracker" not in " ".join(child.cmdline()):
+                child.kill()
+
+
+def test_workers_that_are_killed_while_they_start_are_started_again(plan, done, tmp_path):
+    with KilledAtOnce(2, times=2) as executor:
+        outcome = run_study(plan, tmp_path, executor)
+    assert (outcome.n_run, outcome.n_failed, outcome.messages) == (len(plan.runs), 0, [])
+    assert executor.times < 0
+    same_runs(plan, done, Store(tmp_path))
+
+
+def test_workers_that_are_killed_again_and_again_are_no_matter_of_a_guard(tmp_path, plan):
+    with KilledAtOnce(2, times=9) as executor, pytest.raises(GridPathError) as raised:
+        run_study(plan, tmp_path, executor)
+    assert re.search(r"as soon as they were started, 3 times \(by .*signal 9.*\), as when memory runs out", str(raised.value))
+    assert "__main__" not in str(raised.value)
+
+
 # -- Dask ---------------------------------------------------------------------------------------------------------------
 
 

@@ -7,6 +7,7 @@ import dataclasses
 import errno
 import os
 import random
+import shutil
 import signal
 import time
 
@@ -120,9 +121,61 @@ def test_damaged_files_are_told_set_aside_and_run_again(plan, done, tmp_path):
     outcome = run_study(plan, tmp_path)
     assert (outcome.n_run, outcome.n_done_before) == (2, len(keys) - 2)
     assert outcome.messages == [
-        f"2 stored runs were found damaged, set aside in {tmp_path / 'damaged'} and carried out again",
+        f"2 stored runs were found damaged, set aside in {tmp_path / 'damaged'} (such as {keys[3]}.npz) and carried out again",
     ]
     assert len(list((tmp_path / "damaged").iterdir())) == 2
+    same_runs(plan, done, store)
+
+
+def test_odd_entries_are_set_aside_and_named_and_the_study_goes_on(plan, done, tmp_path):
+    keys = [run.key for run in plan.runs]
+    shutil.copytree(done.folder, tmp_path / "study")
+    store = Store(tmp_path / "study")
+    folder, link, loop = (store.path(key) for key in keys[:3])
+    for path in (folder, link, loop):
+        path.unlink()
+    folder.mkdir()
+    (folder / "inside").write_text("mine")
+    link.symlink_to("nowhere")
+    loop.symlink_to(loop.name)
+    parts = [folder.parent / ".x.npz.0123abcd.part", store.folder / ".plan.json.0123abcd.part"]
+    for part in parts:
+        part.mkdir()
+        (part / "inside").write_text("mine")
+    outcome = run_study(plan, store.folder)
+    assert (outcome.n_run, outcome.n_failed) == (3, 0)
+    aside = store.folder / "damaged"
+    assert (
+        outcome.messages[0]
+        == f"3 stored runs were found damaged, set aside in {aside} (such as {folder.name}) and carried out again"
+    )
+    assert sorted(outcome.messages[1:]) == sorted(
+        f"{part.name} is nothing that a study writes where it stood, and was set aside in {aside}" for part in parts
+    )
+    assert sorted(path.name for path in aside.iterdir()) == sorted(path.name for path in (folder, link, loop, *parts))
+    assert all((aside / path.name / "inside").read_text() == "mine" for path in (folder, *parts))
+    same_runs(plan, done, store)
+    assert run_study(plan, store.folder).messages == []
+
+
+@pytest.mark.parametrize("damage", ["a file for a folder of runs", "a link for all runs"])
+def test_what_stands_where_runs_are_to_stand_is_set_aside(damage, plan, done, tmp_path):
+    shutil.copytree(done.folder, tmp_path / "study")
+    store = Store(tmp_path / "study")
+    runs = store.folder / "runs"
+    if damage == "a link for all runs":
+        shutil.rmtree(runs)
+        runs.symlink_to("nowhere")
+        name = "runs"
+    else:
+        part = store.path(plan.runs[0].key).parent
+        shutil.rmtree(part)
+        part.write_text("mine")
+        name = part.name
+    outcome = run_study(plan, store.folder)
+    assert outcome.messages == [
+        f"{name} is nothing that a study writes where it stood, and was set aside in {store.folder / 'damaged'}"
+    ]
     same_runs(plan, done, store)
 
 

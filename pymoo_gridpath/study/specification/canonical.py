@@ -70,7 +70,9 @@ def algorithm_name(name: str, where: Where) -> str:
     try:
         row = find_capability(name)
     except CapabilityError:
-        raise StudyError(f"there is no algorithm {name!r}; {nearest(name, [*CAPABILITIES, 'exact'])}", where) from None
+        raise StudyError(
+            f"there is no algorithm {values.show(name)}; {nearest(name, [*CAPABILITIES, 'exact'])}", where
+        ) from None
     if row.unfit:
         raise StudyError(f"{row.name} {row.unfit}", where)
     if row.needs == "automated_dm":
@@ -123,7 +125,7 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
     for key in table:
         if key not in arguments:
             hint = nearest(key, arguments, "it takes") if arguments else "it takes none"
-            raise StudyError(f"{name} takes no argument {key!r}; {hint}", (*where, key))
+            raise StudyError(f"{name} takes no argument {values.show(key)}; {hint}", (*where, key))
         if isinstance(arguments[key], int | float) or key == "prob_var":
             values.number(table[key], (*where, key))
     for key, item in inspect.signature(classes[name]).parameters.items():

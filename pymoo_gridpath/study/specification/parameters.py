@@ -56,7 +56,7 @@ def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
             raise StudyError(f"{key} {why} a study does not set; {algorithm} takes {', '.join(free) or 'nothing else'}", place)
         if key not in free:
             hint = nearest(key, free, "it takes") if free else "it takes none"
-            raise StudyError(f"{algorithm} takes no parameter {key!r}; {hint}", place)
+            raise StudyError(f"{algorithm} takes no parameter {values.show(key)}; {hint}", place)
         value = values.like(accepted[key], values.plain_json(value, place))
         if value != accepted[key] or isinstance(value, bool) is not isinstance(accepted[key], bool):
             _check(key, value, accepted[key], place)

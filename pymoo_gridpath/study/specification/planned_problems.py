@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps import load_map, map_format, read_scen, read_text_header, shipped_maps
+from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.build import build_grid, pack_grid
 from pymoo_gridpath.study.plan import PlannedProblem, run_key
@@ -191,4 +192,5 @@ def refuse(study: Study, where, about: str, function, *arguments, **options) -> 
         raise study.error(f"{about}{error}", where) from None
     except Exception as error:
         # pymoo's own checks of arguments, some of them on several lines.
-        raise study.error(f"{about}{type(error).__name__}: {' '.join(str(error).split())}", where) from None
+        text = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        raise study.error(f"{about}{want_of_memory() if is_want_of_memory(error) else text}", where) from None

@@ -15,6 +15,11 @@ from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.study.specification.toml_lines import KeyLines
 from pymoo_gridpath.study.specification.values import Where
 
+# Of a study of a thousand problems, a tenth.
+_MOST_BYTES = 2_000_000
+# tomllib takes time that grows with the square of the number of parts of a key.
+_MANY_PARTS = re.compile(r"""(?<![\w."'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){50}""")
+
 #: What a new study file is called.
 STARTER_NAME = "study.toml"
 
@@ -63,6 +68,9 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     """
     path = checks.file_path("path", path, StudyError)
     source = Source(path, _read(path))
+    if many := _MANY_PARTS.search(source.text):
+        line = source.text.count("\n", 0, many.start()) + 1
+        raise StudyError("a key has 50 parts or more, expected a study", path=source.path, line=line)
     try:
         data = tomllib.loads(source.text)
     except tomllib.TOMLDecodeError as error:
@@ -97,11 +105,14 @@ def write_starter(path: str | os.PathLike[str] = STARTER_NAME) -> Path:
 
 def _read(path: str | os.PathLike[str]) -> str:
     try:
-        data = Path(path).read_bytes()
+        with open(path, "rb") as file:
+            data = file.read(_MOST_BYTES + 1)
     except FileNotFoundError:
         raise StudyError("there is no such file, expected a study; `pymoo-gridpath study init` writes one", path=path) from None
     except OSError as error:
         raise StudyError(f"the file cannot be read ({error.strerror or error}), expected a study", path=path) from None
+    if len(data) > _MOST_BYTES:
+        raise StudyError(f"the file is larger than {_MOST_BYTES:,} bytes, expected a study", path=path)
     try:
         # As tomllib does, so that lines are counted alike.
         return data.decode("utf-8").removeprefix("\ufeff").replace("\r\n", "\n")

@@ -39,9 +39,10 @@ class KeyLines:
         self._counts: dict[Where, int] = {}
         self._text = text
         table: Where = ()
-        position = _skip(text, 0)
+        position, counted, line = _skip(text, 0), 0, 1
         while position < len(text):
-            line = text.count("\n", 0, position) + 1
+            line += text.count("\n", counted, position)
+            counted = position
             if text[position] == "[":
                 array = text.startswith("[[", position)
                 parts, position = _read_key(text, position + 1 + array)

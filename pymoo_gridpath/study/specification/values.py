@@ -42,7 +42,7 @@ def check_keys(table: Mapping[str, Any], known: Iterable[str], where: Where, own
         if key not in known:
             if where:
                 refuse_key_of_study(key, (*where, key), owner)
-            raise StudyError(f"{owner} has no key {shown(key)}; {nearest(shown(key), known)}", (*where, key))
+            raise StudyError(f"{owner} has no key {show(key)}; {nearest(shown(key), known)}", (*where, key))
 
 
 def refuse_key_of_study(key: str, where: Where, owner: str) -> None:
