@@ -69,7 +69,7 @@ def found(document: dict) -> tuple[list[dict], list[np.ndarray]]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0])
     parser.add_argument("--rounds", type=int, default=5, metavar="N", help="plans on each map (default: 5)")
     rounds = parser.parse_args().rounds
     with tempfile.TemporaryDirectory() as name:

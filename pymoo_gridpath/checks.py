@@ -199,7 +199,7 @@ def items(name: str, value: Any, expected: str, error: type[GridPathError] = Gri
 
 def instance(
     name: str, value: Any, cls: type[T], hint: str = "", optional: bool = False, error: type[GridPathError] = GridPathError
-) -> T:
+) -> Any:
     """Return an object of a class, or of one that inherits it."""
     if not isinstance(value, cls) and not (optional and value is None):
         article = "an" if cls.__name__[0] in "AEIOU" else "a"

@@ -70,7 +70,7 @@ class Objective(ABC):
         return whole if whole is None or box == grid.whole else np.asarray(whole)[box.slices]
 
     @abstractmethod
-    def __call__(self, paths, sums: np.ndarray | None) -> np.ndarray:
+    def __call__(self, paths, sums: np.ndarray | BoxedField | None) -> np.ndarray:
         """Score a batch of paths.
 
         Parameters
@@ -220,4 +220,10 @@ def boxed_field_of(objective: Objective, grid: OccupancyGrid, box: Box) -> np.nd
     inside = field_of(objective, grid, box)
     if inside is None or box == grid.whole:
         return inside
-    return BoxedField(inside, box, grid.width, functools.partial(field_of, objective, grid))
+    return BoxedField(inside, box, grid.width, functools.partial(_known_field_of, objective, grid))
+
+
+def _known_field_of(objective: Objective, grid: OccupancyGrid) -> np.ndarray:
+    field = field_of(objective, grid)
+    assert field is not None
+    return field

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from typing import Any
 
 import numpy as np
 
@@ -359,7 +360,7 @@ def _rows(name: str, rows: np.ndarray, frame: MonotoneFrame, n_columns: int) -> 
     return rows if rows.dtype.kind == "i" and rows.itemsize >= 4 else rows.astype(np.int64)
 
 
-def _summed(field: np.ndarray | BoxedField, *shapes: tuple[int, ...]) -> np.ndarray:
+def _summed(field: np.ndarray | BoxedField, *shapes: tuple[int, ...]) -> Any:
     """Return a prepared field if it has one of the shapes, or is known in a box."""
     if isinstance(field, BoxedField):
         return field

@@ -200,7 +200,8 @@ def same(one: Any, other: Any, depth: int = 4) -> bool:
     if type(one) is not type(other) or not type(one).__module__.startswith("pymoo_gridpath"):
         return type(one) is type(other)
     if hasattr(one, "__dict__"):
-        return same(*({key: value for key, value in vars(a).items() if key[0] != "_"} for a in (one, other)), depth - 1)
+        first, second = ({key: value for key, value in vars(a).items() if key[0] != "_"} for a in (one, other))
+        return same(first, second, depth - 1)
     return True
 
 

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from pymoo.optimize import minimize
@@ -58,13 +58,13 @@ class World:
         occupied[2:4, 3:5] = True
         self.occupied = occupied
         self.grid = OccupancyGrid(occupied, resolution=0.5, origin=(1.0, 2.0, 0.3), name="small")
-        self.query = {"start": (0, 0), "goal": (7, 5)}
+        self.query: dict[str, Any] = {"start": (0, 0), "goal": (7, 5)}
         self.field = np.arange(48.0).reshape(6, 8) / 8
         self.random = np.random.default_rng(1)
 
     @cached_property
     def codings(self) -> dict[str, Any]:
-        return {name: cls(self.grid, **self.query) for name, cls in representations.REPRESENTATIONS.items()}
+        return {name: cast(Any, cls)(self.grid, **self.query) for name, cls in representations.REPRESENTATIONS.items()}
 
     @cached_property
     def frame(self) -> MonotoneFrame:
@@ -93,7 +93,7 @@ class World:
 
     @property
     def recorder(self) -> convergence.ConvergenceRecorder:
-        return self.result.algorithm.callback
+        return cast(Any, self.result).algorithm.callback
 
     @cached_property
     def trade_off(self) -> decision.TradeOffSet:
@@ -309,7 +309,7 @@ def _codings(w: World) -> dict[str, Call]:
 
 
 def _paths(w: World) -> dict[str, Call]:
-    frame, paths = w.frame, w.problem.decode(w.rows(w.problem))
+    frame, paths = w.frame, cast(ColumnPaths, w.problem.decode(w.rows(w.problem)))
     cells = w.codings["cells"].decode(w.rows(w.codings["cells"]))
     n = frame.n_columns - 1
     return {

@@ -301,7 +301,7 @@ def is_small(plan) -> bool:
 def finished() -> tuple[Any, Path]:
     """Return a plan and the folder that holds all its runs, made once in a process."""
     folder = Path(tempfile.mkdtemp(prefix="studies-"))
-    small = copy.deepcopy(BASE) | {"seeds": 1}
+    small: dict[str, Any] = copy.deepcopy(BASE) | {"seeds": 1}
     small["algorithms"] = small["algorithms"][1:3]
     (folder / "study.toml").write_text(document(small))
     (folder / "room.txt").write_text(ROOM)

@@ -102,7 +102,7 @@ def _check_termination(termination) -> None:
         if len(arguments) != 1:
             raise GridPathError(f"termination is {checks.shown(termination)}, expected {expected}")
         checks.number(
-            f"the number of the termination {checks.shown(name)}", *arguments, 0.0, infinite=True, expected="zero or more"
+            f"the number of the termination {checks.shown(name)}", arguments[0], 0.0, infinite=True, expected="zero or more"
         )
     try:
         get_termination(name, *arguments)

@@ -6,6 +6,7 @@ import hashlib
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ def grid_digest(grid: OccupancyGrid) -> str:
     Cells go row by row from the bottom, each from the left.
     """
     digest = hashlib.sha256(f"{grid.width} {grid.height}\n".encode())
-    digest.update(np.ascontiguousarray(grid.occupied))
+    digest.update(np.ascontiguousarray(grid.occupied).data)
     return digest.hexdigest()
 
 
@@ -102,7 +103,7 @@ def _search(algorithm) -> dict:
     return {"complete": found.complete, "message": found.message, "budget": _scalars(getattr(algorithm, "budget", None))}
 
 
-def plain(value):
+def plain(value) -> Any:
     """Return a value as what strict JSON can hold: numbers that are not finite become None, unknown objects their text."""
     try:
         return _plain(value)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -69,7 +69,9 @@ def plot_map(
     style.check_axes(ax)
     legend = checks.flag("legend", legend)
     field = _field(grid, potential)
-    ends = [(cell, role, *mark) for cell, (role, *mark) in zip((start, goal), _ENDS, strict=True) if cell is not None]
+    ends: list[Any] = [
+        (cell, role, *mark) for cell, (role, *mark) in zip((start, goal), _ENDS, strict=True) if cell is not None
+    ]
     for cell, role, *_ in ends:
         grid.check_cell(cell, role)
     with style.figure_style(ax):

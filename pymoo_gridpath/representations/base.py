@@ -131,7 +131,7 @@ class Representation(ABC):
         """
 
     @abstractmethod
-    def prepare(self, field: np.ndarray) -> np.ndarray:
+    def prepare(self, field: np.ndarray | BoxedField) -> np.ndarray | BoxedField:
         """Return a field over the grid in the form that ``paths.total`` wants.
 
         Parameters
@@ -215,7 +215,7 @@ class MonotoneRepresentation(Representation):
         self.frame = MonotoneFrame(grid, start, goal, axis)
         self.grid, self.start, self.goal = grid, self.frame.start, self.frame.goal
 
-    def prepare(self, field: np.ndarray) -> np.ndarray:
+    def prepare(self, field: np.ndarray | BoxedField) -> np.ndarray | BoxedField:
         """Return a field over the grid as prefix sums up each column of the frame.
 
         If these lose the cost of a cell, as those of cheap cells beside dear ones, it is returned by the index of the cell, in
