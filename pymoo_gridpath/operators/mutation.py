@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from pymoo.core.algorithm import Algorithm
 from pymoo.core.mutation import Mutation
 from pymoo.core.variable import Real
 
@@ -132,7 +131,8 @@ class BitwiseMutation(Mutation):
 
     def decay(self, algorithm) -> float:
         """Return the share of the initial rate that is left."""
-        checks.instance("algorithm", algorithm, Algorithm, " of pymoo", optional=True)
+        if not (algorithm is None or hasattr(algorithm, "termination")):
+            raise GridPathError(f"algorithm is {checks.shown(algorithm)}, expected an Algorithm of pymoo")
         done = 0.0 if algorithm is None or algorithm.termination is None else algorithm.termination.perc
         return 1.0 - (1.0 - self.final) * float(np.clip(done, 0.0, 1.0))
 
