@@ -1,0 +1,191 @@
+"""What is known by name: classes of the package, of whoever calls `register`, and of installed packages' entry points."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, Generic, TypeVar
+
+from pymoo_gridpath.errors import GridPathError, nearest
+
+T = TypeVar("T")
+C = TypeVar("C", bound=type)
+
+
+class Registry(Generic[T]):
+    """Classes of one kind by name.
+
+    Parameters
+    ----------
+    kind : str
+        What messages call one of them, such as "objective".
+    group : str
+        Entry points of this group are known by their names, too; they are loaded when asked for.
+    base : type
+        What the classes inherit from.
+    error : type of GridPathError, optional
+        What is raised where a name is unknown.
+    key : callable, optional
+        From a name to what two spellings of it have in common; by default names are taken as they are written.
+
+    Examples
+    --------
+    >>> class Shape:
+    ...     pass
+    >>> shapes = Registry("shape", "an.example.of.shapes", Shape)
+    >>> class Square(Shape):
+    ...     name = "square"
+    >>> shapes.register(Square) is Square
+    True
+    >>> shapes["square"].__name__, list(shapes)
+    ('Square', ['square'])
+    >>> shapes["sqare"]
+    Traceback (most recent call last):
+    ...
+    pymoo_gridpath.errors.GridPathError: there is no shape 'sqare'; did you mean 'square'?
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        group: str,
+        base: type,
+        error: type[GridPathError] = GridPathError,
+        key: Callable[[str], str] = str,
+    ):
+        self.kind, self.group, self.base = kind, group, base
+        self._error, self._key = error, key
+        self._known: dict[str, T] = {}
+        self._names: dict[str, str] = {}
+        self._entry_points: dict[str, EntryPoint] | None = None
+        _REGISTRIES.append(self)
+
+    def register(self, thing: T, name: str | None = None) -> T:
+        """Make a class known and return it, so that this serves as a decorator.
+
+        Parameters
+        ----------
+        thing : type
+            A class that inherits from `base`.
+        name : str, optional
+            By default its attribute ``name``, or the name of the class.
+
+        Raises
+        ------
+        GridPathError
+            If it is no such class, has no name, or the name is taken by another one.
+        """
+        if not (isinstance(thing, type) and issubclass(thing, self.base)):
+            raise GridPathError(
+                f"{thing!r} cannot be registered as {self.kind}, expected a class derived from {self.base.__name__}"
+            )
+        name = _name_of(thing) if name is None else name
+        if not (isinstance(name, str) and re.fullmatch(r"[\w./+-]+", name)):
+            raise GridPathError(f"the name of the {self.kind} {thing.__name__} is {name!r}, expected letters, digits, - and _")
+        known = self._known.get(self._key(name))
+        # A module that is run again brings the same class anew.
+        if known is not None and _path_of(known) != _path_of(thing):
+            raise GridPathError(f"the {self.kind} {name!r} is {_path_of(known)} already; give {_path_of(thing)} another name")
+        self._known[self._key(name)], self._names[self._key(name)] = thing, name
+        return thing
+
+    def __getitem__(self, name: str) -> T:
+        """Return the class of a name.
+
+        Raises
+        ------
+        GridPathError
+            Or `error`, if there is none, with the nearest, or an entry point cannot be loaded.
+        """
+        if not isinstance(name, str):
+            raise self._error(f"there is no {self.kind} {name!r}; expected one of {', '.join(self)}")
+        key = self._key(name)
+        if key not in self._known and key in self._installed:
+            self._load(key)
+        if key not in self._known:
+            raise self._error(f"there is no {self.kind} {name!r}; {nearest(name, self)}")
+        return self._known[key]
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and (self._key(name) in self._known or self._key(name) in self._installed)
+
+    def __iter__(self) -> Iterator[str]:
+        """Yield the names, first those that are registered, then those of entry points."""
+        yield from self._names.values()
+        yield from (point.name for key, point in self._installed.items() if key not in self._known)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def values(self) -> Iterator[T]:
+        """Yield the classes in the order of their names; entry points that cannot be loaded are left out, with a warning."""
+        for name in list(self):
+            try:
+                yield self[name]
+            except GridPathError as error:
+                warnings.warn(str(error), stacklevel=2)
+
+    @property
+    def _installed(self) -> dict[str, EntryPoint]:
+        if self._entry_points is None:
+            self._entry_points = {self._key(point.name): point for point in entry_points(group=self.group)}
+        return self._entry_points
+
+    def _load(self, key: str) -> None:
+        point = self._installed[key]
+        try:
+            thing: Any = point.load()
+        except Exception as error:
+            raise self._error(
+                f"the {self.kind} {point.name!r} of the installed package cannot be imported from {point.value}: "
+                f"{type(error).__name__}: {error}"
+            ) from error
+        # Its module may have registered it by itself.
+        if self._known.get(key) is not thing:
+            self.register(thing, point.name)
+
+
+# Every registry there is, from the first made on.
+_REGISTRIES: list[Registry] = []
+
+
+def register(cls: C) -> C:
+    """Make a class of your own known by its name, wherever the package takes a name; a decorator.
+
+    What it is follows from what it inherits from: a `Representation`, an `Objective`, a `Planner`, a `MapFormat`, an operator
+    or an algorithm of pymoo. To be found without an import of its module, a class stands in the entry points of an installed
+    package instead: ``pymoo_gridpath.representations``, ``.objectives``, ``.operators``, ``.planners``, ``.map_formats`` or
+    ``.algorithms``.
+
+    Parameters
+    ----------
+    cls : type
+
+    Returns
+    -------
+    type
+        The same class.
+
+    Raises
+    ------
+    GridPathError
+        If it inherits from none of these, has no name, or another class has that name.
+    """
+    fitting = [one for one in _REGISTRIES if isinstance(cls, type) and issubclass(cls, one.base)]
+    if not fitting:
+        bases = ", ".join(one.base.__name__ for one in _REGISTRIES)
+        raise GridPathError(f"{cls!r} cannot be registered, expected a class derived from one of {bases}")
+    # The closest base: a planner is an algorithm as well.
+    return min(fitting, key=lambda one: cls.__mro__.index(one.base)).register(cls)
+
+
+def _name_of(thing: type) -> str:
+    """Return the attribute ``name`` of a class if it is a text; an operator of pymoo has none before it is made."""
+    name = getattr(thing, "name", None)
+    return name if isinstance(name, str) else thing.__name__
+
+
+def _path_of(thing: Any) -> str:
+    return f"{thing.__module__}.{thing.__qualname__}"
