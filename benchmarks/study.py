@@ -31,15 +31,15 @@ import psutil
 from pymoo.core.algorithm import Algorithm
 from pymoo.optimize import minimize
 
-from pymoo_gridpath.study.build import build_algorithm, build_problem, build_termination
-from pymoo_gridpath.study.execute import Recorder, execute
-from pymoo_gridpath.study.executors import LocalProcesses, dask_executor
-from pymoo_gridpath.study.plan import Plan
-from pymoo_gridpath.study.record import from_bytes, to_bytes
+from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.planning.plan import Plan
 from pymoo_gridpath.study.report import write_report
-from pymoo_gridpath.study.runner import run_study
+from pymoo_gridpath.study.running.execute import Recorder, execute
+from pymoo_gridpath.study.running.executors import LocalProcesses, dask_executor
+from pymoo_gridpath.study.running.record import from_bytes, to_bytes
+from pymoo_gridpath.study.running.runner import run_study
+from pymoo_gridpath.study.running.store import Store
 from pymoo_gridpath.study.specification.study import AlgorithmSpec, ProblemSpec, Study
-from pymoo_gridpath.study.store import Store
 
 N_KILLS = 20
 # Alternating blocks of a few runs, once bare and once as a study.
@@ -188,8 +188,8 @@ def kills(folder: Path) -> None:
 
 _COORDINATOR = """
 import pickle, sys
-from pymoo_gridpath.study.executors import LocalProcesses
-from pymoo_gridpath.study.runner import run_study
+from pymoo_gridpath.study.running.executors import LocalProcesses
+from pymoo_gridpath.study.running.runner import run_study
 if __name__ == "__main__":
     with open(sys.argv[1], "rb") as file:
         plan = pickle.load(file)
@@ -305,7 +305,7 @@ def store(folder: Path) -> None:
     size = sum(file.stat().st_size for file in folder.glob("study/runs/*/*.npz"))
     (folder / "plan.pickle").write_bytes(pickle.dumps(plan))
     (folder / "again.py").write_text(
-        "import pickle, sys\nfrom pymoo_gridpath.study.runner import run_study\n"
+        "import pickle, sys\nfrom pymoo_gridpath.study.running.runner import run_study\n"
         "outcome = run_study(pickle.load(open(sys.argv[1], 'rb')), sys.argv[2])\n"
         "assert outcome.n_run == 0 and outcome.n_failed == 0, outcome\n"
     )

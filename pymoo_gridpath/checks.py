@@ -270,3 +270,8 @@ def array(
     if finite and found.dtype.kind == "f" and not np.isfinite(found).all():
         raise error(f"{name} holds values that are not finite, expected {expected}")
     return found
+
+
+def within(values: np.ndarray, low: int, high: int) -> bool:
+    """Return whether all values lie from ``low`` to ``high``."""
+    return values.size == 0 or bool(low <= values.min() and values.max() <= high)

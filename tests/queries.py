@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from pymoo_gridpath.errors import GridError
-from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.paths.frame import MonotoneFrame
 
 # A spiral from the bottom left into the middle, which turns back along both axes.
 SPIRAL = OccupancyGrid(

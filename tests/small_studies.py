@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from pymoo_gridpath.study.plan import Plan
-from pymoo_gridpath.study.record import History, RunRecord
+from pymoo_gridpath.study.planning.plan import Plan
+from pymoo_gridpath.study.running.record import History, RunRecord
+from pymoo_gridpath.study.running.store import Store
 from pymoo_gridpath.study.specification.study import AlgorithmSpec, ProblemSpec, Study
-from pymoo_gridpath.study.store import Store
 
 #: What a run finds, as opposed to when and how fast.
 HISTORY = ("evaluations", "n_legal", "n_members", "best_length", "points", "first", "last")
@@ -23,8 +23,8 @@ FOUND = ("status", "complete", "n_eval", "n_gen", "n_legal", "n_members", "objec
 
 _COORDINATOR = """
 import pickle, signal, sys
-from pymoo_gridpath.study.executors import LocalProcesses
-from pymoo_gridpath.study.runner import run_study
+from pymoo_gridpath.study.running.executors import LocalProcesses
+from pymoo_gridpath.study.running.runner import run_study
 
 if __name__ == "__main__":
     # Processes that are started in the background may have been told to ignore it.

@@ -12,9 +12,9 @@ from pathlib import Path
 import moocore
 import numpy as np
 
-from pymoo_gridpath.study.plan import Plan, PlannedAlgorithm, PlannedProblem, PlannedRun
-from pymoo_gridpath.study.record import History, RunRecord, to_bytes
-from pymoo_gridpath.study.store import Store
+from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedProblem, PlannedRun
+from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
+from pymoo_gridpath.study.running.store import Store
 
 VERSIONS = {"pymoo_gridpath": "0.1.0", "pymoo": "0.6.2"}
 NSGA2 = {"algorithm": "NSGA2", "pop_size": 100, "smoothness": None, "operators": {"base": "default"}, "parameters": {}}

@@ -189,7 +189,7 @@ def test_an_objective_that_returns_nan_is_named():
 def test_a_grid_of_another_class_is_refused_wherever_one_is_taken(wrong):
     from pymoo_gridpath.algorithms import ahmed_deb_2013
     from pymoo_gridpath.fields import clearance, obstacle_potential
-    from pymoo_gridpath.frame import MonotoneFrame
+    from pymoo_gridpath.paths.frame import MonotoneFrame
     from pymoo_gridpath.plotting import plot_map
 
     takers = [clearance, obstacle_potential, plot_map]

@@ -16,10 +16,10 @@ from pymoo_gridpath import cli
 from pymoo_gridpath.errors import GridPathError, MapError
 from pymoo_gridpath.maps import load_map
 from pymoo_gridpath.memory import is_want_of_memory
-from pymoo_gridpath.study import execute as execute_module
-from pymoo_gridpath.study.estimate import estimate
-from pymoo_gridpath.study.execute import execute
-from pymoo_gridpath.study.record import from_bytes
+from pymoo_gridpath.study.planning.estimate import estimate
+from pymoo_gridpath.study.running import execute as execute_module
+from pymoo_gridpath.study.running.execute import execute
+from pymoo_gridpath.study.running.record import from_bytes
 
 LIMITED = """
 import resource, sys
@@ -98,6 +98,6 @@ def test_a_run_of_a_study_that_lacks_memory_is_a_failed_run_with_a_sentence(monk
         "memory ran out: a problem in 'integer' on 144 cells needs about 0.1 GB; expected a smaller map, coarser cells or more "
         "free memory"
     )
-    monkeypatch.setattr("pymoo_gridpath.study.estimate.build_problem", fail)
+    monkeypatch.setattr("pymoo_gridpath.study.planning.estimate.build_problem", fail)
     with pytest.raises(GridPathError, match=r"fails on the problem .*: memory ran out: .* needs about"):
         estimate(plan)

@@ -18,7 +18,7 @@ from pymoo.optimize import minimize
 from pymoo.termination import get_termination
 
 import pymoo_gridpath
-import pymoo_gridpath.study.runner
+import pymoo_gridpath.study.running.runner
 from pymoo_gridpath import (
     GridPathProblem,
     OccupancyGrid,
@@ -37,9 +37,9 @@ from pymoo_gridpath import (
     representations,
     study,
 )
-from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.maps.shipped import ShippedMap
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
+from pymoo_gridpath.paths.frame import MonotoneFrame
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference.md"
 
@@ -616,7 +616,7 @@ def _studies(w: World) -> dict[str, Call]:
             },
         ),
         "Outcome": (
-            pymoo_gridpath.study.runner.Outcome,
+            pymoo_gridpath.study.running.runner.Outcome,
             {"n_planned": 1, "n_done_before": 1, "n_run": 1, "n_failed": 0, "messages": []},
         ),
         "LocalProcesses": (study.LocalProcesses, {"n_processes": 2}),

@@ -27,13 +27,14 @@ from unittest.mock import patch
 from harness import main
 
 from pymoo_gridpath.errors import GridPathError, StudyError
-from pymoo_gridpath.study import record, store
-from pymoo_gridpath.study.estimate import estimate
+from pymoo_gridpath.study.planning import expand
+from pymoo_gridpath.study.planning.canonical import n_cells
+from pymoo_gridpath.study.planning.estimate import estimate
 from pymoo_gridpath.study.report import write_report
-from pymoo_gridpath.study.runner import run_study
-from pymoo_gridpath.study.specification import expand, study, toml_file, values
-from pymoo_gridpath.study.specification.canonical import n_cells
-from pymoo_gridpath.study.store import Store
+from pymoo_gridpath.study.running import record, store
+from pymoo_gridpath.study.running.runner import run_study
+from pymoo_gridpath.study.running.store import Store
+from pymoo_gridpath.study.specification import study, toml_file, values
 
 BASE: dict[str, Any] = {
     "name": "fuzzed",

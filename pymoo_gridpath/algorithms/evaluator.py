@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pymoo.core.evaluator import Evaluator
 
-from pymoo_gridpath.operators.individuals import ArrayPopulation
+from pymoo_gridpath.operators.array_population import ArrayPopulation
 
 _NO_VIOLATION = np.zeros(1)
 _NO_VIOLATION.flags.writeable = False

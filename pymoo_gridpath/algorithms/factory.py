@@ -22,12 +22,11 @@ from pymoo.util.reference_direction import (
 )
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.algorithms import _arguments
+from pymoo_gridpath.algorithms import arguments as _arguments
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.differential import WholeNumberDE
 from pymoo_gridpath.algorithms.display import PathOutput
 from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
-from pymoo_gridpath.algorithms.exact import ExactFront
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.algorithms.rvea import FiniteAPDSurvival
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
@@ -36,6 +35,7 @@ from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessT
 from pymoo_gridpath.operators.mating import knows_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
+from pymoo_gridpath.planners.exact import ExactFront
 from pymoo_gridpath.problems import GridPathProblem
 
 _OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")

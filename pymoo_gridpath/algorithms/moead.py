@@ -11,9 +11,9 @@ from pymoo.algorithms.moo.moead import MOEAD, default_decomp
 from scipy.spatial.distance import cdist
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.algorithms._arguments import check_whole
+from pymoo_gridpath.algorithms.arguments import check_whole
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.operators.individuals import ArrayPopulation
+from pymoo_gridpath.operators.array_population import ArrayPopulation
 from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection, knows_arrays
 from pymoo_gridpath.operators.parameters import number
 from pymoo_gridpath.operators.survival import turns_of

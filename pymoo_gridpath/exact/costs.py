@@ -8,9 +8,9 @@ import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.grid import SQRT2, Box, OccupancyGrid
+from pymoo_gridpath.neighbourhood import DIAGONAL, turn_units
 from pymoo_gridpath.objectives import Length, Objective, Turn, field_of
 from pymoo_gridpath.paths import TURN_UNIT
-from pymoo_gridpath.search import DIAGONAL, turn_units
 
 #: One cell of length. Two lengths s + d * sqrt(2) that differ, with d below 200,000, differ by more than the rounding of d
 #: diagonals to this unit, so they compare as they should.

@@ -14,11 +14,12 @@ from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import Costs, integer_costs
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import Front, front_of_two
+from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.objectives import Length, Turn
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.representations.base import max_cells, representation_of
-from pymoo_gridpath.search import HEADING_OF, Moves
-from pymoo_gridpath.search.sequences import Sequences
+from pymoo_gridpath.search import Moves
 
 # Lengths of paths across more cells could overflow.
 _MOST_CELLS = 2**24

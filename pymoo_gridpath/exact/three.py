@@ -7,8 +7,8 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.exact.lists import covered, empty_lists, has_room, insert
-from pymoo_gridpath.exact.smooth import smoothest_paths, traced_paths
+from pymoo_gridpath.exact.label_lists import covered, empty_lists, has_room, insert
+from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
 from pymoo_gridpath.exact.two import CLOSED_FULL, DIRECT, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 

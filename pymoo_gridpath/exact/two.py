@@ -19,9 +19,10 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.exact.smooth import smoothest_paths, traced_paths
 from pymoo_gridpath.exact.supported import Hull, supported_points
-from pymoo_gridpath.search import HEADINGS, UNREACHABLE, Moves
+from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
+from pymoo_gridpath.neighbourhood import HEADINGS
+from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
 
 # Why a kernel returned.

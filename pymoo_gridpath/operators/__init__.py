@@ -16,15 +16,15 @@ from pymoo_gridpath.operators.crossover import (
 from pymoo_gridpath.operators.duplicates import RowDuplicates
 from pymoo_gridpath.operators.mating import ArrayMating
 from pymoo_gridpath.operators.mutation import BitwiseMutation, DiscretePolynomialMutation, MixedMutation
+from pymoo_gridpath.operators.path_crossover import SpliceCrossover
+from pymoo_gridpath.operators.path_mutation import PathMutation
 from pymoo_gridpath.operators.path_repair import PathRepair
 from pymoo_gridpath.operators.path_sampling import ReachableSampling, ScalarizedSampling
+from pymoo_gridpath.operators.path_terrain import terrain_of
 from pymoo_gridpath.operators.repair import EdgeFixing
-from pymoo_gridpath.operators.reroute import PathMutation
 from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.operators.selection import SmoothnessTournament
-from pymoo_gridpath.operators.splice import SpliceCrossover
 from pymoo_gridpath.operators.survival import RankAndSmoothness
-from pymoo_gridpath.operators.terrain import terrain_of
 from pymoo_gridpath.representations.base import MonotoneRepresentation, representation_of
 
 __all__ = [

@@ -9,8 +9,8 @@ from pymoo.algorithms.moo.moead import NeighborhoodSelection
 from pymoo.core.mating import Mating
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.operators.array_population import ArrayPopulation
 from pymoo_gridpath.operators.duplicates import row_keys
-from pymoo_gridpath.operators.individuals import ArrayPopulation
 from pymoo_gridpath.operators.parameters import number
 
 # Rounds of mating that one selection serves. Reading the attributes of a population costs more than its tournaments do.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pymoo.core.repair import Repair
 
-from pymoo_gridpath.operators.terrain import terrain_of
+from pymoo_gridpath.operators.path_terrain import terrain_of
 from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search.sequences import are_legal, mend
 

@@ -8,9 +8,9 @@ from pymoo.util.reference_direction import UniformReferenceDirectionFactory
 
 from pymoo_gridpath.operators.duplicates import row_keys
 from pymoo_gridpath.operators.parameters import in_range
-from pymoo_gridpath.operators.terrain import objective_terms, random_weights, terrain_of, whole_weights
+from pymoo_gridpath.operators.path_terrain import objective_terms, random_weights, terrain_of, whole_weights
 from pymoo_gridpath.representations.base import max_cells
-from pymoo_gridpath.search.sampling import cheapest_paths, paths_through
+from pymoo_gridpath.search.draw import cheapest_paths, paths_through
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, steps_through
 from pymoo_gridpath.search.vary import REROUTE, Changes, vary
 

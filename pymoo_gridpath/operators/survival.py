@@ -13,7 +13,7 @@ from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 from pymoo.util.randomized_argsort import randomized_argsort
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.operators.individuals import ArrayPopulation
+from pymoo_gridpath.operators.array_population import ArrayPopulation
 
 
 class ArraySurvival(Survival):

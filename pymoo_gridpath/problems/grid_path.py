@@ -13,10 +13,10 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
-from pymoo_gridpath.frame import Axis, check_axis
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.objectives import Objective, Turn, boxed_field_of, make_objectives
 from pymoo_gridpath.paths import check_paths
+from pymoo_gridpath.paths.frame import Axis, check_axis
 from pymoo_gridpath.representations import CellSequence, Representation, default_representation, make_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]

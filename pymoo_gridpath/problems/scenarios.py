@@ -6,9 +6,9 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridError
-from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
+from pymoo_gridpath.paths.frame import MonotoneFrame
 
 #: The largest grid to draw has so many cells a side.
 MOST_CELLS = 4096

@@ -7,8 +7,8 @@ from typing import Any
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.frame import Axis, check_axis
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.paths.frame import Axis, check_axis
 from pymoo_gridpath.representations.absolute import AbsoluteRepresentation
 from pymoo_gridpath.representations.base import MonotoneRepresentation, Representation
 from pymoo_gridpath.representations.binary import BinaryRepresentation

@@ -13,11 +13,12 @@ from pymoo_gridpath.checks import shown
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField, check_field
-from pymoo_gridpath.frame import Axis, MonotoneFrame
 from pymoo_gridpath.grid import Box, Cell, OccupancyGrid
+from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
-from pymoo_gridpath.search.moves import HEADINGS, Moves
-from pymoo_gridpath.search.sequences import Sequences, check_sequences
+from pymoo_gridpath.paths.frame import Axis, MonotoneFrame
+from pymoo_gridpath.paths.sequences import Sequences, check_sequences
+from pymoo_gridpath.search.moves import Moves
 
 
 class Representation(ABC):

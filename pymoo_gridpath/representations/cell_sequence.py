@@ -16,9 +16,10 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField, check_costs, check_field, obstacle_potential
 from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 from pymoo_gridpath.paths import CellPaths, check_paths
+from pymoo_gridpath.paths.sequences import Sequences, check_sequences
 from pymoo_gridpath.representations.base import Representation, check_ends
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.sequences import Sequences, check_sequences, cut_loops, mend
+from pymoo_gridpath.search.sequences import cut_loops, mend
 
 # Of up to so many fields sums are looked at for the default length of a row: as many as an exact front has objectives.
 _MOST_TOGETHER = 3

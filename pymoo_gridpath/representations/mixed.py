@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pymoo_gridpath.frame import Axis
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
+from pymoo_gridpath.paths.frame import Axis
 from pymoo_gridpath.representations.base import MonotoneRepresentation
 
 

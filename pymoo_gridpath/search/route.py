@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.search.heap import drop_first, push
-from pymoo_gridpath.search.moves import HEADINGS
 from pymoo_gridpath.search.shortest import UNREACHABLE, grown
 from pymoo_gridpath.search.terrain import Terrain
 

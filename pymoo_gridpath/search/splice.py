@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.route import find_route, make_work, room, unwind
-from pymoo_gridpath.search.sequences import Sequences, append_without_loops
+from pymoo_gridpath.search.sequences import append_without_loops
 from pymoo_gridpath.search.terrain import Terrain
 
 # How far around the two cells, and how long, a way between paths that only come near is looked for.

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.grid import SQRT2
-from pymoo_gridpath.search.moves import DIAGONAL, Moves, taken_backwards
+from pymoo_gridpath.neighbourhood import DIAGONAL
+from pymoo_gridpath.search.moves import Moves, taken_backwards
 from pymoo_gridpath.search.shortest import UNREACHABLE, backward_costs
 
 #: Weights of terms are whole numbers from 0 to this, 1 or more for the length.

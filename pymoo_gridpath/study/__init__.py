@@ -5,18 +5,18 @@ from importlib import import_module
 # Imported where they are first used, since the command line reads this package for every command.
 _HOMES = {
     "AlgorithmSpec": "specification.algorithm",
-    "History": "record",
-    "LocalProcesses": "executors",
-    "Outcome": "runner",
+    "History": "running.record",
+    "LocalProcesses": "running.executors",
+    "Outcome": "running.runner",
     "ProblemSpec": "specification.problem",
     "QueryRange": "specification.problem",
     "RandomFamily": "specification.problem",
-    "RunRecord": "record",
-    "Store": "store",
+    "RunRecord": "running.record",
+    "Store": "running.store",
     "Study": "specification.study",
-    "dask_executor": "executors",
+    "dask_executor": "running.executors",
     "load_study": "specification.toml_file",
-    "run_study": "runner",
+    "run_study": "running.runner",
     "write_report": "report",
 }
 

@@ -13,7 +13,7 @@ from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 from pymoo.optimize import minimize
 
 from pymoo_gridpath.algorithms import CAPABILITIES, StrengthAndSmoothness, make_algorithm, reference_directions
-from pymoo_gridpath.algorithms._arguments import parameters
+from pymoo_gridpath.algorithms.arguments import parameters
 from pymoo_gridpath.algorithms.factory import _class_of
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, DiscreteSBX, RankAndSmoothness, SmoothnessTournament

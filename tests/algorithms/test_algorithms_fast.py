@@ -27,7 +27,7 @@ from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, by_fitness, truncate
 from pymoo_gridpath.operators import ArrayMating, DiscretePolynomialMutation, DiscreteSBX, paper_operators
-from pymoo_gridpath.operators.individuals import ArrayPopulation
+from pymoo_gridpath.operators.array_population import ArrayPopulation
 from pymoo_gridpath.operators.selection import CrowdingTournament, by_dominance_and_crowding
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 

@@ -9,7 +9,8 @@ from exact_fronts import Cost, random_grid
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.exact import exact_front
-from pymoo_gridpath.search import DIAGONAL, Moves, backward_costs
+from pymoo_gridpath.neighbourhood import DIAGONAL
+from pymoo_gridpath.search import Moves, backward_costs
 
 
 def test_ways_that_cost_nothing_lead_straight_to_the_goal_and_fit_default_rows():

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pymoo_gridpath.exact.lists import BEGIN, N_ROWS, SIZE, covered, empty_lists, has_room, insert
+from pymoo_gridpath.exact.label_lists import BEGIN, N_ROWS, SIZE, covered, empty_lists, has_room, insert
 
 N_LISTS = 3
 

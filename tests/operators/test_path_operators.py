@@ -30,12 +30,13 @@ from pymoo_gridpath.operators import (
     path_operators,
     path_sampling,
 )
-from pymoo_gridpath.operators.reroute import WAYS
-from pymoo_gridpath.operators.terrain import random_weights, terrain_of
+from pymoo_gridpath.operators.path_mutation import WAYS
+from pymoo_gridpath.operators.path_terrain import random_weights, terrain_of
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.sequences import Sequences, mend
+from pymoo_gridpath.search.sequences import mend
 
 NAMES = ["integer", "binary", "mixed", "absolute", "cells"]
 

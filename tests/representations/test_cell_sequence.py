@@ -15,8 +15,8 @@ from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators.duplicates import row_keys
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence, make_representation
-from pymoo_gridpath.search.sequences import Sequences
 
 
 def joined(paths):

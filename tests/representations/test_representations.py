@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from queries import queries, random_genes
 
 from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
-from pymoo_gridpath.frame import MonotoneFrame
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Vulnerability
+from pymoo_gridpath.paths.frame import MonotoneFrame
 from pymoo_gridpath.representations import make_representation
 
 NAMES = ["absolute", "binary", "integer", "mixed"]

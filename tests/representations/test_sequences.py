@@ -8,9 +8,9 @@ from queries import queries, random_genes
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.neighbourhood import HEADINGS
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import REPRESENTATIONS, CellSequence, make_representation
-from pymoo_gridpath.search.moves import HEADINGS
-from pymoo_gridpath.search.sequences import Sequences
 
 NAMES = sorted(REPRESENTATIONS)
 

@@ -8,11 +8,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from queries import SPIRAL, queries
 
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.search import terrain as terrains
+from pymoo_gridpath.search.draw import cheapest_paths, paths_through
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.sampling import cheapest_paths, paths_through
-from pymoo_gridpath.search.sequences import Sequences, are_legal, cut_loops, mend
+from pymoo_gridpath.search.sequences import are_legal, cut_loops, mend
 from pymoo_gridpath.search.splice import splice
 from pymoo_gridpath.search.terrain import make_terrain, plain_terrain
 from pymoo_gridpath.search.vary import REROUTE, SHIFT, STRAIGHTEN, Changes, vary

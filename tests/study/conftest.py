@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from small_studies import make_plan
 
-from pymoo_gridpath.study.plan import Plan
-from pymoo_gridpath.study.runner import run_study
-from pymoo_gridpath.study.store import Store
+from pymoo_gridpath.study.planning.plan import Plan
+from pymoo_gridpath.study.running.runner import run_study
+from pymoo_gridpath.study.running.store import Store
 
 
 @pytest.fixture(scope="session")

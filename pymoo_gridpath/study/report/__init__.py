@@ -58,7 +58,7 @@ def write_report(
     from pymoo_gridpath.study.report.figure_style import check_formats
     from pymoo_gridpath.study.report.page import page
     from pymoo_gridpath.study.report.results import collect
-    from pymoo_gridpath.study.store import Store
+    from pymoo_gridpath.study.running.store import Store
 
     forms = check_formats(checks.names("formats", formats))
     checks.file_path("folder", folder)

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pymoo_gridpath.study.plan import PlannedProblem
+from pymoo_gridpath.quality import quartiles
+from pymoo_gridpath.study.planning.plan import PlannedProblem
 from pymoo_gridpath.study.report.comparisons import Comparison, could_tell
-from pymoo_gridpath.study.report.measures import quartiles
 from pymoo_gridpath.study.report.results import Results, gist
 from pymoo_gridpath.study.report.summary import n_reached
 from pymoo_gridpath.study.report.tables import csv_text

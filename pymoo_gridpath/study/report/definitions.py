@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 
+from pymoo_gridpath.quality import SAME
 from pymoo_gridpath.study.report.blocks import Block, Heading, Text
-from pymoo_gridpath.study.report.measures import SAME
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.stretched_axis import SCALE_DEFINITION
 from pymoo_gridpath.study.report.tables import Table

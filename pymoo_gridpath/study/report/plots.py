@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from pymoo_gridpath.quality import quartiles
 from pymoo_gridpath.study.report.figure_style import (
     REFERENCE,
     WIDTH,
@@ -18,7 +19,6 @@ from pymoo_gridpath.study.report.figure_style import (
     plain,
     shortened,
 )
-from pymoo_gridpath.study.report.measures import quartiles
 from pymoo_gridpath.study.report.results import Curve, Results
 from pymoo_gridpath.study.report.statistics import ALPHA, Friedman, cliques
 from pymoo_gridpath.study.report.stretched_axis import stretch, stretch_unit

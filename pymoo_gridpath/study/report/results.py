@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study.plan import Plan, PlannedRun, is_exact
-from pymoo_gridpath.study.record import DamagedRecordError, History, RunRecord
-from pymoo_gridpath.study.report.measures import ReferenceFront, first_reaching, merge_fronts
-from pymoo_gridpath.study.specification.canonical import resolve
-from pymoo_gridpath.study.store import Store
+from pymoo_gridpath.quality import ReferenceFront, first_reaching, merge_fronts
+from pymoo_gridpath.study.planning.canonical import resolve
+from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, is_exact
+from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
+from pymoo_gridpath.study.running.store import Store
 
 
 @dataclass(frozen=True, eq=False)

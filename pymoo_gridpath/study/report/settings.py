@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from pymoo_gridpath.study.plan import PlannedAlgorithm, PlannedProblem
+from pymoo_gridpath.quality import quartiles
+from pymoo_gridpath.study.planning.canonical import operator_classes, resolve
+from pymoo_gridpath.study.planning.plan import PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.blocks import Block, Fold, Heading, Listing, Text
-from pymoo_gridpath.study.report.measures import quartiles
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.summary import reference_phrase
 from pymoo_gridpath.study.report.tables import NOTHING, Table, count, significant, spread
-from pymoo_gridpath.study.specification.canonical import operator_classes, resolve
 
 # Rows of the list of single problems.
 _MOST_ROWS = 40

@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.problems import OBSTACLES
-from pymoo_gridpath.study.specification import canonical, values
+from pymoo_gridpath.study.planning import canonical
+from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
 from pymoo_gridpath.study.specification.parameters import accepted_parameters, parameters
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pymoo_gridpath.algorithms import CAPABILITIES, _arguments
+from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms import arguments as _arguments
 from pymoo_gridpath.algorithms.factory import _class_of
 from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.study.specification import values

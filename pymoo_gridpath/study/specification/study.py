@@ -21,7 +21,7 @@ from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange, 
 from pymoo_gridpath.study.specification.values import Where
 
 if TYPE_CHECKING:
-    from pymoo_gridpath.study.plan import Plan
+    from pymoo_gridpath.study.planning.plan import Plan
     from pymoo_gridpath.study.specification.toml_file import Source
 
 #: Seconds that the exact front which results are measured against may take, unless a study says otherwise.
@@ -99,7 +99,7 @@ class Study:
             If a map cannot be read, a query cannot be solved, an algorithm cannot solve a problem or stops with an error in
             its first two generations, or two of them are the same.
         """
-        from pymoo_gridpath.study.specification.expand import expand
+        from pymoo_gridpath.study.planning.expand import expand
 
         return expand(self)
 

@@ -1,0 +1,72 @@
+"""What path-aware operators know of a problem."""
+
+from __future__ import annotations
+
+import weakref
+
+import numpy as np
+
+from pymoo_gridpath.objectives import Length, field_of
+from pymoo_gridpath.paths.sequences import Sequences
+from pymoo_gridpath.representations.base import max_cells, representation_of
+from pymoo_gridpath.search.sequences import are_legal, mend
+from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
+
+# Made once for each problem; kept apart from it, so that it pickles and compares as before.
+_TERRAINS: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
+
+# Weight of the length where it is no objective: of ways that cost the same, the shorter.
+LEAST_WEIGHT = FULL_WEIGHT // 64
+
+
+def terrain_of(problem) -> Terrain:
+    """Return the terrain of a problem: the length and the fields of its objectives.
+
+    Raises
+    ------
+    GridPathError
+        If the problem has no path representation.
+    """
+    representation = representation_of(problem)
+    if problem not in _TERRAINS:
+        fields = [field_of(objective, problem.grid, representation.box) for objective in problem.objectives]
+        moves = representation.moves
+        start, goal = moves.index(representation.start), moves.index(representation.goal)
+        _TERRAINS[problem] = make_terrain(moves, start, goal, [field for field in fields if field is not None])
+    return _TERRAINS[problem]
+
+
+def paths_of(problem, X: np.ndarray) -> Sequences:
+    """Return the paths that rows of genes code; if some are illegal, all are mended."""
+    representation, terrain = problem.representation, terrain_of(problem)
+    paths = representation.to_sequences(X)
+    if are_legal(paths, terrain).all():
+        return paths
+    return mend(paths, representation.moves, terrain.start, terrain.goal, max_cells(problem))
+
+
+def random_weights(problem, n: int, random_state) -> np.ndarray:
+    """Return random weights of the terms of a problem's terrain, uniform over the simplex, int64, shape (n, K)."""
+    terms = objective_terms(problem)
+    draws = random_state.standard_exponential((n, len(terms)))
+    return whole_weights(problem, draws / draws.sum(axis=1, keepdims=True))
+
+
+def objective_terms(problem) -> list[int]:
+    """Return the numbers of the terms that are objectives, at least one."""
+    n_fields = terrain_of(problem).n_terms - 1
+    terms = list(range(1, n_fields + 1))
+    if not terms or any(isinstance(objective, Length) for objective in problem.objectives):
+        terms.insert(0, 0)
+    return terms
+
+
+def whole_weights(problem, shares: np.ndarray) -> np.ndarray:
+    """Return weights of all terms, int64, shape (N, K), from the shares of those that are objectives, (N, n_terms)."""
+    weights = np.zeros((len(shares), terrain_of(problem).n_terms), dtype=np.int64)
+    terms = objective_terms(problem)
+    weights[:, terms] = np.rint(FULL_WEIGHT * shares)
+    least = 1 if 0 in terms else LEAST_WEIGHT
+    weights[:, 0] = np.maximum(weights[:, 0], least)
+    # Every term counts, if only to choose among ways that are equal in the others.
+    return np.maximum(weights, 1)

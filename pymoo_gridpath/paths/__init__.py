@@ -1,0 +1,10 @@
+"""Batches of decoded paths and their measures."""
+
+from pymoo_gridpath.neighbourhood import TURN_UNIT
+from pymoo_gridpath.paths.cell import CellPaths
+from pymoo_gridpath.paths.check import check_paths
+from pymoo_gridpath.paths.column import ColumnPaths
+from pymoo_gridpath.paths.frame import MonotoneFrame
+from pymoo_gridpath.paths.sequences import Sequences
+
+__all__ = ["TURN_UNIT", "CellPaths", "ColumnPaths", "MonotoneFrame", "Sequences", "check_paths"]

@@ -1,0 +1,1 @@
+"""Planners that are no evolutionary searches, as algorithms of pymoo."""

@@ -1,0 +1,1 @@
+"""From what a study says to the runs that it means."""

@@ -1,0 +1,173 @@
+"""Grids, problems, algorithms and terminations from their canonical form, in whatever process a run takes place."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import zlib
+from collections import OrderedDict
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pymoo.algorithms.moo.rvea import RVEA
+from pymoo.core.algorithm import Algorithm
+from pymoo.core.termination import Termination
+from pymoo.termination.max_eval import MaximumFunctionCallTermination
+from pymoo.termination.max_gen import MaximumGenerationTermination
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.operators import paper_operators
+from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+from pymoo_gridpath.study.planning.canonical import make_operator
+
+# Problems that a process keeps, since many runs share one.
+KEPT_PROBLEMS = 4
+
+_problems: OrderedDict[str, GridPathProblem] = OrderedDict()
+
+
+def pack_grid(grid: OccupancyGrid) -> tuple[dict[str, Any], bytes]:
+    """Return the canonical form of a grid that came from a map, and its cells.
+
+    Returns
+    -------
+    dict
+        ``digest`` (SHA-256 of shape and cells), ``width``, ``height`` and ``corner_cutting``; names, poses and the resolution
+        change no result, since measures are in cells.
+    bytes
+        The cells, eight a byte, compressed.
+    """
+    cells = np.packbits(grid.occupied).tobytes()
+    digest = hashlib.sha256(f"{grid.width} {grid.height} ".encode() + cells).hexdigest()
+    spec = {"digest": digest, "width": grid.width, "height": grid.height, "corner_cutting": grid.corner_cutting}
+    return spec, zlib.compress(cells)
+
+
+def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> OccupancyGrid:
+    """Return the grid that a canonical form describes.
+
+    Parameters
+    ----------
+    spec : mapping
+        ``{"random": ...}``, or what `pack_grid` returned.
+    cells : bytes, optional
+        What `pack_grid` returned; random grids need none.
+
+    Raises
+    ------
+    GridPathError
+        If the cells are missing or are those of another grid.
+    """
+    if "random" in spec:
+        family = spec["random"]
+        grid = random_dense_grid(family["size"], family["p0"], family["seed"])
+        return grid if family["corner_cutting"] else grid.replace(corner_cutting=False)
+    if cells is None:
+        raise GridPathError("the cells of the map are missing, expected those that were planned with")
+    packed = np.frombuffer(zlib.decompress(cells), dtype=np.uint8)
+    shape = spec["height"], spec["width"]
+    occupied = np.unpackbits(packed, count=shape[0] * shape[1]).reshape(shape).astype(bool)
+    grid = OccupancyGrid(occupied, corner_cutting=spec["corner_cutting"])
+    if pack_grid(grid)[0]["digest"] != spec["digest"]:
+        raise GridPathError("the cells of the map are not those that were planned with")
+    return grid
+
+
+def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> GridPathProblem:
+    """Return the problem that a canonical form describes; the last few are kept, and must not be changed.
+
+    Parameters
+    ----------
+    problem : mapping
+        `Task.problem`.
+    grid : bytes, optional
+        `Task.grid`.
+
+    Raises
+    ------
+    GridPathError
+        As `GridPathProblem`.
+    """
+    key = json.dumps(problem, sort_keys=True)
+    made = _problems.get(key)
+    if made is None:
+        settings = {name: problem[name] for name in ("representation", "objectives", "obstacles", "potential_limit", "axis")}
+        cells = build_grid(problem["grid"], grid)
+        made = GridPathProblem(cells, problem["start"], problem["goal"], penalty=problem["penalty"], **settings)
+        _problems[key] = made
+        while len(_problems) > KEPT_PROBLEMS:
+            _problems.popitem(last=False)
+    return made
+
+
+def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> Algorithm:
+    """Return a new algorithm that a canonical form describes, for a problem.
+
+    Raises
+    ------
+    GridPathError
+        As `make_algorithm`.
+    """
+    from pymoo_gridpath.algorithms import ExactFront, ahmed_deb_2013, make_algorithm
+
+    if "preset" in algorithm:
+        setup: Any = ahmed_deb_2013(
+            problem.grid,
+            problem.start,
+            problem.goal,
+            # As an object, so that it is not made again.
+            representation=problem.representation,  # pyright: ignore[reportArgumentType]
+            objectives=problem.objectives,
+            pop_size=algorithm["pop_size"],
+            penalty=None if problem.obstacles == "constraint" else problem.penalty,
+            obstacles=problem.obstacles,
+            potential_limit=problem.potential_limit,
+        )
+        return setup.algorithm
+    if algorithm["algorithm"] == "exact":
+        return ExactFront(max_seconds=algorithm["max_seconds"], max_labels=algorithm["max_labels"])
+    return make_algorithm(
+        algorithm["algorithm"],
+        problem,
+        pop_size=algorithm["pop_size"],
+        smoothness=algorithm["smoothness"],
+        operators=_operators(algorithm["operators"], problem),
+        **algorithm["parameters"],
+    )
+
+
+def _operators(specs: Mapping[str, Any], problem: GridPathProblem) -> dict[str, Any]:
+    paper = paper_operators(problem) if "paper" in specs.values() else {}
+    return {slot: paper[slot] if spec == "paper" else make_operator(slot, spec) for slot, spec in specs.items()}
+
+
+def build_termination(budget: Mapping[str, int], algorithm: Algorithm | None = None) -> Termination:
+    """Return the termination of ``{"evaluations": n}`` or ``{"generations": n}``.
+
+    Parameters
+    ----------
+    budget : mapping
+    algorithm : pymoo.core.algorithm.Algorithm, optional
+        What is to end so. RVEA has to know how many generations there will be, and of evaluations it would make a generation
+        too few of them.
+    """
+    if "generations" in budget:
+        return MaximumGenerationTermination(budget["generations"])
+    if isinstance(algorithm, RVEA):
+        return _EvaluationsOfGenerations(budget["evaluations"], algorithm)
+    return MaximumFunctionCallTermination(budget["evaluations"])
+
+
+class _EvaluationsOfGenerations(MaximumGenerationTermination):
+    """End a run after a number of evaluations, and say beforehand how many generations these are."""
+
+    def __init__(self, n_max_evals: int, algorithm: Any):
+        # pymoo's RVEA leaves out the first generation.
+        super().__init__(1 + math.ceil(max(n_max_evals - algorithm.pop_size, 0) / algorithm.n_offsprings))
+        self.n_max_evals = n_max_evals
+
+    def _update(self, algorithm: Any) -> float:
+        return algorithm.evaluator.n_eval / self.n_max_evals

@@ -1,0 +1,198 @@
+"""From a study to its plan: maps read, queries and pairs checked, and every run given its key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.representations import REPRESENTATIONS, MonotoneRepresentation, make_representation
+from pymoo_gridpath.study.planning import canonical
+from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem
+from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedProblem, PlannedRun, is_exact, run_key
+from pymoo_gridpath.study.planning.planned_problems import place_of, plan_problems, refuse
+from pymoo_gridpath.study.planning.trial import Pair, one_of_each_kind, run_briefly
+from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
+from pymoo_gridpath.study.specification.study import Study
+
+#: Runs that a study may have.
+MAX_RUNS = 1_000_000
+
+# Work, in cells, that checking the queries of a group for a path that advances column by column may take: about two seconds.
+_CHECKED_CELLS = 8_000_000
+_CELLS_A_CHECK = 8_000
+
+
+def expand(study: Study) -> Plan:
+    """Return the plan of a study; see `Study.plan`."""
+    problems, groups = plan_problems(study)
+    reference = None if study.reference is False else {"algorithm": "exact", **study.reference}
+    algorithms = [_algorithm(spec, reference) for spec in study.algorithms]
+    n_runs = sum(1 if is_exact(algorithm.spec) else len(study.seeds) for algorithm in algorithms) * len(problems)
+    if n_runs > MAX_RUNS:
+        raise study.error(f"the study has {n_runs:,} runs, expected at most {MAX_RUNS:,}", ("seeds",))
+    _check_pairs(study, problems, groups, algorithms)
+    runs = _runs(study, problems, algorithms)
+    if reference is not None:
+        problems, runs = _with_references(problems, runs, reference)
+    return Plan(study.name, study.budget, study.target, tuple(problems), tuple(algorithms), tuple(runs), reference)
+
+
+# -- algorithms ---------------------------------------------------------------------------------------------------------
+
+
+def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> PlannedAlgorithm:
+    """Return the canonical form of an algorithm, but for the defaults that depend on the problem."""
+    if spec.preset is not None:
+        content: dict[str, Any] = {"preset": spec.preset, "pop_size": spec.pop_size or canonical.PRESET_POP_SIZE}
+    elif spec.algorithm == "exact":
+        content = {"algorithm": "exact", "max_seconds": spec.max_seconds, "max_labels": spec.max_labels}
+        if spec.max_seconds is None and spec.max_labels is None and reference is not None:
+            content = dict(reference)
+    else:
+        content = {
+            "algorithm": spec.algorithm,
+            "pop_size": spec.pop_size or canonical.DEFAULT_POP_SIZE,
+            "smoothness": spec.smoothness,
+            "operators": spec.operators,
+            "parameters": spec.parameters,
+        }
+    return PlannedAlgorithm(spec.label, content, spec.overrides)
+
+
+def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[PlannedAlgorithm]) -> None:
+    """Build one problem of each group, and every algorithm on it, and try them, so that what fails does so before the runs."""
+    pairs: list[Pair] = []
+    first = {group: k for k, group in reversed(list(enumerate(groups)))}
+    for group in sorted(first):
+        planned = problems[first[group]]
+        about = f"problem {planned.label!r}: "
+        refuse(study, place_of(group), about, build_problem, planned.spec, planned.grid)
+        members = [problems[k] for k in range(len(problems)) if groups[k] == group]
+        checked = {planned.spec["representation"]} & _monotone()
+        if checked:
+            _check_advancing(study, place_of(group), members, planned.spec)
+        for k, algorithm in enumerate(algorithms):
+            where, about = ("algorithms", k), f"{algorithm.label!r} does not suit the problem {planned.label!r}: "
+            content, settled = canonical.resolve(planned.spec, algorithm.spec, algorithm.overrides)
+            if content["obstacles"] == "limit" and content["potential_limit"] is None:
+                message = "obstacles 'limit' needs potential_limit, the largest vulnerability of a path, beside it"
+                raise study.error(message, (*where, "obstacles"))
+            problem = refuse(study, where, about, build_problem, content, planned.grid)
+            made = refuse(study, where, about, build_algorithm, settled, problem)
+            _check_parameters(study, k, made, problem.n_obj, settled)
+            _check_promises(study, k, problem, settled, made)
+            if not is_exact(settled):
+                pairs.append(Pair(content, settled, planned.grid, planned.label, k))
+            if content["representation"] in _monotone() - checked:
+                checked.add(content["representation"])
+                _check_advancing(study, where, members, content)
+    for pair in one_of_each_kind(pairs):
+        about = f"{algorithms[pair.index].label!r} fails on the problem {pair.label!r}: "
+        refuse(study, ("algorithms", pair.index), about, run_briefly, pair)
+
+
+def _monotone() -> set[str]:
+    return {name for name, cls in REPRESENTATIONS.items() if issubclass(cls, MonotoneRepresentation)}
+
+
+def _check_advancing(study: Study, where, members: list[PlannedProblem], content: Mapping[str, Any]) -> None:
+    """Refuse queries that no path can solve which advances column by column, as far as that can be told in little time."""
+    if "random" in content["grid"] and content["grid"]["random"]["corner_cutting"]:
+        return
+    grid = build_grid(members[0].spec["grid"], members[0].grid)
+    most = max(1, _CHECKED_CELLS // (grid.occupied.size + _CELLS_A_CHECK))
+    chosen = np.unique(np.linspace(0, len(members) - 1, min(most, len(members))).astype(int))
+    for planned in (members[k] for k in chosen):
+        if "random" in planned.spec["grid"]:
+            grid = build_grid(planned.spec["grid"])
+        start, goal = planned.spec["start"], planned.spec["goal"]
+        about = f"problem {planned.label!r}: "
+        refuse(study, where, about, make_representation, content["representation"], grid, start, goal, content["axis"])
+
+
+def _check_parameters(study: Study, k: int, made: Any, n_obj: int, algorithm: Mapping[str, Any]) -> None:
+    """Refuse what pymoo would make fit without a word."""
+    given, where = algorithm.get("parameters", {}), ("algorithms", k, "parameters")
+    if "n_neighbors" in given and given["n_neighbors"] > len(made.ref_dirs):
+        raise study.error(
+            f"n_neighbors is {given['n_neighbors']}, expected at most the {len(made.ref_dirs)} reference directions",
+            (*where, "n_neighbors"),
+        )
+    decided = [key for key in ("ref_dirs", "pop_per_ref_point") if key in given]
+    if decided and study.algorithms[k].pop_size is not None and made.pop_size != algorithm["pop_size"]:
+        raise study.error(
+            f"pop_size is {algorithm['pop_size']}, but {decided[0]} makes it {made.pop_size}; leave pop_size out",
+            ("algorithms", k, "pop_size"),
+        )
+    if "weights" in given and len(given["weights"]) != n_obj:
+        raise study.error(
+            f"weights has {len(given['weights'])} entries, expected one for each of the {n_obj} objectives", (*where, "weights")
+        )
+
+
+def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any], made: Any) -> None:
+    """Refuse what would run, but not as a study promises."""
+    row = CAPABILITIES.get(algorithm.get("algorithm", ""))
+    if row is not None and problem.has_constraints() and not row.reproducible_constrained:
+        raise study.error(
+            f"{row.name} gives another result each time on problems with constraints, whatever the seed; "
+            f"expected obstacles 'penalty', or another algorithm",
+            ("algorithms", k),
+        )
+    most = study.budget.get("evaluations")
+    if most is not None and not is_exact(algorithm) and most < made.pop_size:
+        raise study.error(
+            f"pop_size is {made.pop_size}, expected at most the {most} evaluations of the budget",
+            ("algorithms", k, "pop_size"),
+        )
+
+
+# -- runs ---------------------------------------------------------------------------------------------------------------
+
+
+def _runs(study: Study, problems: list[PlannedProblem], algorithms: list[PlannedAlgorithm]) -> list[PlannedRun]:
+    """Return every run, those of a problem together, so that a process that makes several builds it once."""
+    runs: list[PlannedRun] = []
+    seen: dict[str, PlannedRun] = {}
+    for i, problem in enumerate(problems):
+        for j, algorithm in enumerate(algorithms):
+            content, settled = canonical.resolve(problem.spec, algorithm.spec, algorithm.overrides)
+            exact = is_exact(settled)
+            for seed in (0,) if exact else study.seeds:
+                run = PlannedRun(run_key(content, settled, None if exact else study.budget, seed), i, j, seed)
+                if run.key in seen:
+                    raise _twins(study, problems, algorithms, seen[run.key], run)
+                seen[run.key] = run
+                runs.append(run)
+    return runs
+
+
+def _twins(study: Study, problems, algorithms, one: PlannedRun, other: PlannedRun):
+    """Return the error of two runs that are the same."""
+    assert one.algorithm is not None and other.algorithm is not None
+    first, second = algorithms[one.algorithm].label, algorithms[other.algorithm].label
+    if one.problem == other.problem:
+        message = (
+            f"{second!r} is the same on the problem {problems[one.problem].label!r} as {first!r} "
+            f"({study.line(('algorithms', one.algorithm))}), so that it would be compared with itself"
+        )
+    else:
+        message = (
+            f"{second!r} makes the problem {problems[other.problem].label!r} the same as {problems[one.problem].label!r} "
+            f"is to {first!r}, so that runs would count twice"
+        )
+    return study.error(message, ("algorithms", other.algorithm))
+
+
+def _with_references(problems, runs: list[PlannedRun], reference) -> tuple[list[PlannedProblem], list[PlannedRun]]:
+    """Return the problems with the keys of their references, and the runs with these first."""
+    keys = [run_key(problem.spec, reference, None, 0) for problem in problems]
+    wanted = set(keys)
+    asked = {run.key: run for run in runs if run.key in wanted}
+    first = [asked.get(key, PlannedRun(key, k, None, 0)) for k, key in enumerate(keys)]
+    problems = [replace(problem, reference=key) for problem, key in zip(problems, keys, strict=True)]
+    return problems, first + [run for run in runs if run.key not in asked]

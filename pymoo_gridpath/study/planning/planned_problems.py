@@ -1,0 +1,196 @@
+"""The problems of a study with their maps read: each grid and query in canonical form."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.maps import load_map, map_format, read_scen, read_text_header, shipped_maps
+from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
+from pymoo_gridpath.representations import default_representation
+from pymoo_gridpath.study.planning import canonical
+from pymoo_gridpath.study.planning.build import build_grid, pack_grid
+from pymoo_gridpath.study.planning.plan import PlannedProblem, run_key
+from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange
+from pymoo_gridpath.study.specification.study import Study
+
+
+class _Item(NamedTuple):
+    """One problem of a group before its settings are added."""
+
+    suffix: str
+    grid: dict[str, Any]
+    cells: bytes | None
+    start: Cell
+    goal: Cell
+
+
+def plan_problems(study: Study) -> tuple[list[PlannedProblem], list[int]]:
+    """Return all problems, and for each the index of the table that it stems from."""
+    problems: list[PlannedProblem] = []
+    groups: list[int] = []
+    labels: dict[str, int] = {}
+    maps: dict[tuple, OccupancyGrid] = {}
+    for k, spec in enumerate(study.problems):
+        items = list(_items(study, k, spec, maps))
+        for item in items:
+            label = f"{spec.label}/{item.suffix}" if len(items) > 1 else spec.label
+            if label in labels:
+                raise study.error(f"the problem {label!r} has the name of another; give one of them another name", place_of(k))
+            labels[label] = k
+            problems.append(PlannedProblem(label, spec.label, _settings(spec, item), item.cells, source=_source(spec, items)))
+            groups.append(k)
+    _refuse_twins(study, problems, groups)
+    return problems, groups
+
+
+def _source(spec: ProblemSpec, items: list[_Item]) -> str:
+    """Return where the map of a problem comes from, in words."""
+    if spec.random is not None:
+        return ""
+    words = [str(spec.map or (spec.grid.name if spec.grid is not None else str(spec.scen).removesuffix(".scen")))]
+    if spec.scen is not None:
+        words.append(f"query {items[0].suffix} of {spec.scen}" if len(items) == 1 else f"numbered queries of {spec.scen}")
+    given = {"resolution": spec.resolution, "unknown": spec.unknown, "threshold": spec.threshold}
+    words += [f"{key} {value}" for key, value in given.items() if value is not None]
+    if spec.radius:
+        words.append(f"obstacles grown by {spec.radius:g} m")
+    return ", ".join(words)
+
+
+def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyGrid]) -> Iterator[_Item]:
+    if spec.random is not None:
+        family = spec.random
+        goal = (family.size - 1, family.size - 1)
+        for seed in family.seeds:
+            content = {"size": family.size, "p0": family.p0, "seed": seed, "corner_cutting": family.corner_cutting}
+            grid = {"random": content}
+            if not family.corner_cutting:
+                # With corner cutting there is always a path.
+                refuse(study, (*place_of(k), "random"), f"seed {seed}: ", build_grid(grid).check_query, (0, 0), goal)
+            yield _Item(str(seed), grid, None, (0, 0), goal)
+        return
+    grid, queries = _map_queries(study, k, spec, maps)
+    grown = refuse(study, (*place_of(k), "radius"), "", grid.inflate, spec.radius)
+    content, cells = pack_grid(grown)
+    for suffix, start, goal in queries:
+        about = f"query {suffix}: " if spec.scen else ""
+        where = (*place_of(k), "queries" if spec.scen else "start")
+        refuse(study, where, about, grid.check_query, start, goal)
+        if spec.radius:
+            grow = f"{about}with obstacles grown by the robot's radius of {spec.radius:g} m, "
+            refuse(study, (*place_of(k), "radius"), grow, grown.check_query, start, goal)
+        yield _Item(suffix, content, cells, start, goal)
+
+
+def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[OccupancyGrid, list[tuple[str, Cell, Cell]]]:
+    """Return the grid of a problem as it was read, and its queries with what tells them apart."""
+    scen = None if spec.scen is None else study.folder / spec.scen
+    known = None
+    if scen is not None and not scen.is_file():
+        raise study.error(f"{scen}: no such file, expected a .scen file of queries", (*place_of(k), "scen"))
+    if spec.grid is not None:
+        grid = spec.grid
+    else:
+        path = _map_path(study, spec)
+        where = (*place_of(k), "map" if spec.map is not None else "scen")
+        options = {key: getattr(spec, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")}
+        key = (path, *options.values())
+        if key not in maps:
+            maps[key] = refuse(study, where, "", load_map, path, **options)
+        grid = maps[key]
+        known = _known_query(path) if scen is None else None
+    if scen is not None:
+        return grid, _scen_queries(study, k, spec, scen, grid)
+    start, goal = spec.start or (known and known.start), spec.goal or (known and known.goal)
+    if not start or not goal:
+        missing = " and no ".join(role for role, cell in (("start", start), ("goal", goal)) if not cell)
+        raise study.error(
+            f"the problem has no {missing}, and the map {grid.name!r} names none; expected a cell [x, y], x from 0 to "
+            f"{grid.width - 1}, y from 0 (bottom) to {grid.height - 1}",
+            place_of(k),
+        )
+    return grid, [("", start, goal)]
+
+
+def _map_path(study: Study, spec: ProblemSpec) -> str:
+    """Return the path of a map, or the name of a shipped one; a file beside the study goes first, as in `load_map`."""
+    name = spec.map if spec.map is not None else str(spec.scen).removesuffix(".scen")
+    beside = study.folder / name
+    shipped = not beside.exists() and Path(name).name == name and not Path(name).suffix
+    return name if shipped else os.fspath(beside)
+
+
+def _known_query(path: str):
+    """Return what says the query of a shipped map or a text map, or None."""
+    if not Path(path).is_file():
+        return next((item for item in shipped_maps() if item.name == path), None)
+    return read_text_header(path) if map_format(path) == "a plain text map" else None
+
+
+def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: OccupancyGrid) -> list[tuple[str, Cell, Cell]]:
+    found = refuse(study, (*place_of(k), "scen"), "", read_scen, path, grid)
+    if not found:
+        raise study.error(f"{spec.scen} holds no query", (*place_of(k), "scen"))
+    wanted = spec.queries or QueryRange()
+    if isinstance(wanted, QueryRange):
+        last = len(found) - 1 if wanted.last is None else wanted.last
+        numbers = range(wanted.first, last + 1, wanted.step)
+        end = max(wanted.first, last)
+    else:
+        numbers, end = wanted, max(wanted)
+    if end >= len(found):
+        raise study.error(
+            f"queries go up to {end}, but {spec.scen} has {len(found)} of them, counted from 0", (*place_of(k), "queries")
+        )
+    return [(str(n), found[n].start, found[n].goal) for n in numbers]
+
+
+def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
+    """Return the canonical form of a problem."""
+    corner_cutting = item.grid.get("random", item.grid)["corner_cutting"]
+    default = default_representation(corner_cutting, spec.axis)  # pyright: ignore[reportArgumentType]
+    return canonical.settle(
+        {
+            "grid": item.grid,
+            "start": list(item.start),
+            "goal": list(item.goal),
+            "objectives": list(spec.objectives),
+            "representation": spec.representation or default,
+            "obstacles": spec.obstacles,
+            "penalty": spec.penalty,
+            "potential_limit": spec.potential_limit,
+            "axis": spec.axis,
+        }
+    )
+
+
+def _refuse_twins(study: Study, problems: list[PlannedProblem], groups: list[int]) -> None:
+    seen: dict[str, int] = {}
+    for k, problem in enumerate(problems):
+        key = run_key(problem.spec, {}, None, 0)
+        if key in seen:
+            other = f"{problems[seen[key]].label!r} ({study.line(place_of(groups[seen[key]]))})"
+            message = f"the problem {problem.label!r} is the same as {other}, expected each once"
+            raise study.error(message, place_of(groups[k]))
+        seen[key] = k
+
+
+def place_of(k: int) -> tuple[str, int]:
+    return "problems", k
+
+
+def refuse(study: Study, where, about: str, function, *arguments, **options) -> Any:
+    """Return what a function returns, and put the place in the study before what it says is wrong."""
+    try:
+        return function(*arguments, **options)
+    except GridPathError as error:
+        raise study.error(f"{about}{error}", where) from None
+    except Exception as error:
+        # pymoo's own checks of arguments, some of them on several lines.
+        text = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        raise study.error(f"{about}{want_of_memory() if is_want_of_memory(error) else text}", where) from None

@@ -1,0 +1,330 @@
+"""One run of a study, in whatever process."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+import time
+import traceback
+from datetime import UTC, datetime
+from functools import lru_cache
+from typing import Any
+
+import moocore
+import numpy as np
+from pymoo.core.callback import Callback
+
+from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
+from pymoo_gridpath.memory import is_want_of_memory, needed, want_of_memory
+from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.planning.canonical import n_cells
+from pymoo_gridpath.study.planning.plan import Task, is_exact
+from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
+from pymoo_gridpath.versions import versions
+
+#: Most records of a history: beyond that, every second one is dropped, and from then on half as many are made.
+MAX_RECORDS = 100
+# Of a traceback; the end says what happened.
+_MAX_MESSAGE = 20_000
+# How many times as many generations as a budget of evaluations asks for, and how many more, end a run.
+_LONGEST = 5, 20
+# Kinds of runs that this process has warmed up for.
+_warm: set[tuple] = set()
+
+
+def execute(task: Task) -> bytes:
+    """Carry out one run and return the bytes of its record, see `to_bytes`.
+
+    X, F and the history but for its seconds depend on the task alone. A run that raises gives a record with status "failed" and
+    the traceback, or with a sentence if memory ran out.
+    """
+    started, begin = _now(), time.perf_counter()
+    try:
+        return to_bytes(_run(task, started))
+    except (Exception, SystemExit) as error:
+        if is_ctrl_c(error):
+            raise KeyboardInterrupt from error
+        message = want_of_memory(needed_for(task)) if is_want_of_memory(error) else traceback.format_exc()
+    return failed_run(task, message, started, time.perf_counter() - begin)
+
+
+def needed_for(task: Task) -> str:
+    """Return what a run costs in memory, in words."""
+    problem = task.problem
+    turn = "turn" in problem["objectives"]
+    return needed(problem["representation"], n_cells(problem["grid"]), is_exact(task.algorithm), turn)
+
+
+def failed_run(task: Task, message: str, started: str | None = None, seconds: float = 0.0) -> bytes:
+    """Return the bytes of the record of a run that failed."""
+    objectives = [str(name) for name in task.problem.get("objectives", [])]
+    return to_bytes(
+        RunRecord(
+            key=task.key,
+            seed=task.seed,
+            status="failed",
+            message=message[-_MAX_MESSAGE:],
+            complete=False,
+            seconds=seconds,
+            n_eval=0,
+            n_gen=0,
+            started=started or _now(),
+            versions=versions(),
+            machine=machine(),
+            problem=task.problem,
+            algorithm=task.algorithm,
+            budget=task.budget,
+            objectives=objectives,
+            X=np.empty((0, 0)),
+            F=np.empty((0, len(objectives))),
+            turn=np.empty(0),
+            n_legal=0,
+            n_members=0,
+            history=None,
+        )
+    )
+
+
+def _run(task: Task, started: str) -> RunRecord:
+    problem = build_problem(task.problem, task.grid)
+    if COMPILED:
+        _warm_up(task, problem)
+    algorithm: Any = build_algorithm(task.algorithm, problem)
+    recorder = Recorder(problem.objective_names)
+    termination = None if task.budget is None else build_termination(task.budget, algorithm)
+    result = _search(problem, algorithm, task.seed, termination, recorder)
+    members = Members(algorithm)
+    front = members.front()
+    return RunRecord(
+        key=task.key,
+        seed=task.seed,
+        status="finished",
+        message=result.message or "",
+        complete=result.success is not False,
+        seconds=recorder.seconds[-1],
+        n_eval=int(algorithm.evaluator.n_eval),
+        n_gen=algorithm.n_iter - 1,
+        started=started,
+        versions=versions(),
+        machine=machine(),
+        problem=task.problem,
+        algorithm=task.algorithm,
+        budget=task.budget,
+        objectives=list(problem.objective_names),
+        X=members.X(front, problem.n_var),
+        F=members.F[front],
+        turn=members.turn[front],
+        n_legal=members.n_legal,
+        n_members=members.n_members,
+        history=recorder.history(),
+    )
+
+
+def _warm_up(task: Task, problem) -> None:
+    """Have this process load or compile what runs of this kind need, so that the first takes no longer than the others."""
+    kind = (problem.representation.name, problem.obstacles, *problem.objective_names, json.dumps(task.algorithm))
+    if kind in _warm:
+        return
+    _warm.add(kind)
+    spec, termination = task.algorithm, None
+    if task.budget is None:
+        spec = {**spec, "max_labels": 100}
+    else:
+        termination = build_termination({"generations": 2})
+    try:
+        _search(problem, build_algorithm(spec, problem), task.seed, termination, Recorder(problem.objective_names))
+    except Exception as error:  # the run itself will say so
+        if is_ctrl_c(error):
+            raise KeyboardInterrupt from error
+
+
+def _search(problem, algorithm, seed: int, termination, recorder: Recorder):
+    options = {} if termination is None else {"termination": termination}
+    algorithm.setup(problem, seed=seed, callback=recorder, **options)
+    most = _most_generations(algorithm)
+    while algorithm.has_next() and recorder.generation < most:
+        algorithm.next()
+    recorder.finish(algorithm)
+    result = algorithm.result()
+    if algorithm.has_next():
+        result.message = f"ended after {most} generations, in which it made but {algorithm.evaluator.n_eval} evaluations"
+    return result
+
+
+def _most_generations(algorithm: Any) -> float:
+    """Return after how many generations to end a run whose budget is one of evaluations.
+
+    Where there are but few paths, some algorithms find next to no new one in a generation and would go on for hours, or for
+    ever.
+    """
+    most = getattr(algorithm.termination, "n_max_evals", None)
+    if most is None:
+        return math.inf
+    return _LONGEST[0] * math.ceil(most / max(algorithm.n_offsprings or algorithm.pop_size, 1)) + _LONGEST[1]
+
+
+class Members:
+    """The population of an algorithm.
+
+    Attributes
+    ----------
+    F : numpy.ndarray, shape (n_legal, n_obj)
+        Of those that are legal paths, and so without penalties.
+    turn : numpy.ndarray, shape (n_legal,)
+        Theirs, in degrees.
+    n_legal, n_members : int
+    """
+
+    def __init__(self, algorithm):
+        members = algorithm.pop.tolist()
+        self._legal = _legal(members, algorithm.problem.has_constraints())
+        self.n_members, self.n_legal = len(members), len(self._legal)
+        self.F = np.array([one.F for one in self._legal], dtype=float).reshape(-1, algorithm.problem.n_obj)
+        self.turn = np.array([one.data["turn"] for one in self._legal], dtype=float)
+
+    def front(self) -> np.ndarray:
+        """Return the indices of the non-dominated ones, each point of F once, sorted by the objectives from the first on.
+
+        Of those with the same objectives, it is the one that turns least.
+        """
+        order = np.lexsort((self.turn, *self.F.T[::-1]))
+        F = self.F[order]
+        kept = np.ones(len(F), dtype=bool)
+        if F.shape[1] == 2:
+            # Each has to be better in the second than all before it, which are no worse in the first.
+            kept[1:] = F[1:, 1] < np.minimum.accumulate(F[:-1, 1])
+            return order[kept]
+        kept[1:] = (F[1:] != F[:-1]).any(axis=1)
+        order = order[kept]
+        return order[moocore.is_nondominated(F[kept])] if len(order) else order
+
+    def X(self, indices: np.ndarray, n_var: int) -> np.ndarray:
+        """Return the genes of some of the legal ones."""
+        if not len(indices):
+            return np.empty((0, n_var))
+        return np.array([self._legal[k].X for k in indices])
+
+
+def _legal(individuals: list, constrained: bool) -> list:
+    if not constrained:
+        return [one for one in individuals if not one.data["interfering_cells"]]
+    return [one for one in individuals if not one.data["interfering_cells"] and one.CV[0] <= 0]
+
+
+class Recorder(Callback):
+    """A pymoo callback that makes the `History` of a run.
+
+    Parameters
+    ----------
+    objectives : sequence of str
+        Names of the columns of F.
+
+    Attributes
+    ----------
+    seconds : list of float
+        Of each record, since the recorder was made.
+    generation : int
+        Of the last one, from 1 on.
+    """
+
+    def __init__(self, objectives):
+        super().__init__()
+        self.seconds: list[float] = []
+        self._column = list(objectives).index("length") if "length" in objectives else None
+        self._counts: list[tuple[int, int, int, float]] = []
+        self._fronts: list[np.ndarray] = []
+        self._n_obj = len(objectives)
+        self.generation = 0
+        self._recorded = 0
+        self._step = 1
+        self._begin = time.perf_counter()
+
+    # pymoo's CallbackCollection calls update() only, so this is the hook that works everywhere.
+    def _update(self, algorithm: Any) -> None:
+        self.generation += 1
+        if (self.generation - 1) % self._step:
+            return
+        if len(self.seconds) == MAX_RECORDS:
+            for records in (self.seconds, self._counts, self._fronts):
+                del records[1::2]
+            self._step *= 2
+            if (self.generation - 1) % self._step:
+                return
+        self._record(algorithm)
+
+    def finish(self, algorithm: Any) -> None:
+        """Make sure that the last generation is on record."""
+        if self._recorded == self.generation:
+            return
+        if len(self.seconds) == MAX_RECORDS:
+            for records in (self.seconds, self._counts, self._fronts):
+                records.pop()
+        self._record(algorithm)
+
+    def _record(self, algorithm: Any) -> None:
+        seconds = time.perf_counter() - self._begin
+        members = Members(algorithm)
+        F = members.F
+        best = np.nan if self._column is None else F[:, self._column].min(initial=np.inf)
+        self.seconds.append(seconds)
+        self._counts.append((int(algorithm.evaluator.n_eval), members.n_legal, members.n_members, float(best)))
+        self._fronts.append(F[members.front()])
+        self._recorded = self.generation
+
+    def history(self) -> History:
+        """Return the records."""
+        evaluations, n_legal, n_members, best = zip(*self._counts, strict=True)
+        points, first, last = _spans(self._fronts)
+        return History(
+            evaluations=np.array(evaluations, dtype=np.int64),
+            seconds=np.array(self.seconds),
+            n_legal=np.array(n_legal, dtype=np.int64),
+            n_members=np.array(n_members, dtype=np.int64),
+            best_length=np.array(best, dtype=float),
+            points=np.array(points, dtype=float).reshape(-1, self._n_obj),
+            first=np.array(first, dtype=np.int32),
+            last=np.array(last, dtype=np.int32),
+        )
+
+
+def _spans(fronts: list[np.ndarray]) -> tuple[list[np.ndarray], list[int], list[int]]:
+    """Return each point that is in successive fronts once, with the first and the last of these."""
+    points: list[np.ndarray] = []
+    first: list[int] = []
+    last: list[int] = []
+    standing: dict[bytes, int] = {}
+    for k, front in enumerate(fronts):
+        still = {}
+        for point in front:
+            name = point.tobytes()
+            index = standing.get(name)
+            if index is None:
+                index = len(points)
+                points.append(point)
+                first.append(k)
+                last.append(k)
+            last[index] = k
+            still[name] = index
+        standing = still
+    return points, first, last
+
+
+@lru_cache(maxsize=1)
+def machine() -> dict[str, Any]:
+    """Return what this process runs on: system, processor and number of cores."""
+    return {"system": f"{platform.system()} {platform.machine()}", "processor": _processor(), "cores": os.cpu_count()}
+
+
+def _processor() -> str:
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor() or "unknown"
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
