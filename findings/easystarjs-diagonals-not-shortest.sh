@@ -2,7 +2,7 @@
 # easystarjs 0.4.4 (npm): with diagonals enabled its A* does not return the cheapest path, on a 4 x 3 map with one wall cell.
 #
 # Good guess: A* with a diagonal cost of 1.4 is optimal for that cost.
-# Behaviour: about every fourth random map (9 x 9, a quarter blocked) gets a path that is too long by one bend or more.
+# Behaviour: about every fourth random map (9 x 9, a quarter blocked) gets a path that is too long.
 #   With the four straight moves alone its paths are optimal.
 # So: do not take its lengths for reference lengths once enableDiagonals() has been called.
 set -euo pipefail

@@ -13,7 +13,8 @@ trap 'rm -rf "$tmp"' EXIT
 python3 -m venv "$tmp/venv"
 "$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check \
   Platypus-Opt==1.4.1 moocore==0.3.2 scipy==1.17.1 numpy==2.4.6
-"$tmp/venv/bin/pip" install --quiet --no-compile --no-deps --disable-pip-version-check jmetalpy==1.9.0  # indicators need no more
+"$tmp/venv/bin/pip" install --quiet --no-compile --no-deps --disable-pip-version-check \
+  jmetalpy==1.9.0  # indicators need no more
 cd "$tmp"
 venv/bin/python - <<'PY'
 import math

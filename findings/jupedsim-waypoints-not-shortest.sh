@@ -2,15 +2,15 @@
 # jupedsim 1.4.2: RoutingEngine's way round obstacles is up to a quarter longer than the shortest one.
 #
 # Good guess: compute_waypoints() gives the shortest way through the polygon, from corner to corner, start and goal once each.
-# Behaviour: it picks a way through the triangles of a mesh first and straightens that, so another gap between two walls may be
-#   the shorter one; on the floor below random queries are 0.1 to 25 % too long, none is shortest. Corners are passed
+# Behaviour: on the floor below random queries are 0.1 to 25 % too long, and none is the shortest. Corners are passed
 #   0.2 m away, whatever the agent, and the goal may stand in the list twice.
 # So: not a reference for shortest lengths; use a visibility graph for that, and drop repeated points.
 set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 python3 -m venv "$tmp/venv"
-"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check jupedsim==1.4.2 shapely==2.2.0 networkx==3.6.1 numpy==2.4.6
+"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check \
+  jupedsim==1.4.2 shapely==2.2.0 networkx==3.6.1 numpy==2.4.6
 cd "$tmp"
 venv/bin/python - <<'PY'
 import math

@@ -31,7 +31,8 @@ def run(algorithm):
     calls = np.array(seen)
     fractions = int((calls != np.rint(calls)).any(axis=1).sum())
     outside = int(((calls < 0) | (calls > 8)).any(axis=1).sum())
-    print(f"{algorithm.__name__:12} {len(calls)} calls, {fractions} with fractions, {outside} outside 0..8, best {best.solution}")
+    counts = f"{len(calls)} calls, {fractions} with fractions, {outside} outside 0..8"
+    print(f"{algorithm.__name__:12} {counts}, best {best.solution}")
     return fractions, outside, best.solution
 
 

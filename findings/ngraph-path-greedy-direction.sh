@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # ngraph.path 1.6.1 (npm): aGreedy returns its path now from start to goal, now from goal to start.
 #
-# Good guess: like aStar and nba of the same package it lists the goal first (its documented, if odd, order).
-# Behaviour: the order depends on where its two searches meet. On a line of 2 or 3 nodes the goal is first, on a line
+# Good guess: like aStar and nba of the same package it lists the goal first (an odd order, but a fixed one).
+# Behaviour: the order changes with the map. On a line of 2 or 3 nodes the goal is first, on a line
 #   of 4 or more the start is. Code that reverses every path turns half of them the wrong way round.
 # So: look at path[0].id before using the path.
 set -euo pipefail

@@ -10,16 +10,18 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 python3 -m venv "$tmp/venv"
-"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check opencv-python-headless==4.11.0.86 numpy==1.26.4
+"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check \
+  opencv-python-headless==4.11.0.86 numpy==1.26.4
 cd "$tmp"
 venv/bin/python - <<'PY'
 import cv2
 import numpy as np
 
 areas = {}
-for name, rows, columns in (("block of 3 x 3", slice(2, 5), slice(2, 5)), ("lone cell", 3, 3), ("wall of 1 x 20", 3, slice(1, 21))):
+shapes = {"block of 3 x 3": (slice(2, 5), slice(2, 5)), "lone cell": (3, 3), "wall of 1 x 20": (3, slice(1, 21))}
+for name, cells in shapes.items():
     grid = np.zeros((7, 22), dtype=np.uint8)
-    grid[rows, columns] = 1
+    grid[cells] = 1
     contours, _ = cv2.findContours(grid, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     counted = cv2.connectedComponentsWithStats(grid)[2][1, cv2.CC_STAT_AREA]
     areas[name] = [cv2.contourArea(contour) for contour in contours]

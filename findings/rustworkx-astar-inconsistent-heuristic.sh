@@ -10,7 +10,8 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 python3 -m venv "$tmp/venv"
-"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check rustworkx==0.18.1 astar==0.99 networkx==3.6.1 numpy==2.4.6
+"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check \
+  rustworkx==0.18.1 astar==0.99 networkx==3.6.1 numpy==2.4.6
 cd "$tmp"
 venv/bin/python - <<'PY'
 import astar

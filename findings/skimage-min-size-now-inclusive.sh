@@ -2,7 +2,7 @@
 # scikit-image 0.26.0: remove_small_objects(map, min_size=4) now removes objects of 4 cells too.
 #
 # Good guess: min_size is deprecated but still keeps its meaning (smaller than min_size goes, min_size stays).
-# Behaviour: its value is passed on as the new max_size, which includes the bound. A FutureWarning says that the new parameter is
+# Behaviour: it acts like the new max_size, which includes the bound. A FutureWarning says that the new parameter is
 #   inclusive, not that the old one has become so. Obstacles of just that size vanish from cleaned maps, and maps
 #   differ between versions of the library with the same call.
 # So: write max_size=n - 1.
@@ -11,7 +11,8 @@ tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 for version in 0.25.2 0.26.0; do
   python3 -m venv "$tmp/$version"
-  "$tmp/$version/bin/pip" install --quiet --no-compile --disable-pip-version-check "scikit-image==$version" scipy==1.17.1 numpy==2.4.6
+  "$tmp/$version/bin/pip" install --quiet --no-compile --disable-pip-version-check \
+    "scikit-image==$version" scipy==1.17.1 numpy==2.4.6
 done
 cd "$tmp"
 for version in 0.25.2 0.26.0; do

@@ -3,13 +3,15 @@
 #
 # Good guess: negative costs are impassable (MCP's documentation), so a start on such a cell raises ValueError, as an end does.
 # Behaviour: only entering a cell is checked. The route leaves the wall; half of the wall's negative cost goes into
-#   the first step of the geometric cost, and all of it into the plain one. Mark walls with -1000 and the short route below costs -498.5.
-# So: check start and end yourself, or mark walls with inf.
+#   the first step of the geometric cost, and all of it into the plain one. With walls of -1000 the short route below
+#   costs -498.5.
+# So: check start and end yourself, or mark walls with inf (then a start in a wall raises).
 set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 python3 -m venv "$tmp/venv"
-"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check scikit-image==0.26.0 scipy==1.17.1 numpy==2.4.6
+"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check \
+  scikit-image==0.26.0 scipy==1.17.1 numpy==2.4.6
 cd "$tmp"
 venv/bin/python - <<'PY'
 import numpy as np

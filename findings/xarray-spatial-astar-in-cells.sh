@@ -3,13 +3,14 @@
 #
 # Good guess: like cost_distance() and proximity() of the same package it measures in the units of the raster's coordinates.
 # Behaviour: on a raster of 0.5 m cells the way to the far corner is 7.66 where cost_distance() says 3.83. The two
-#   agree only on rasters whose cells are 1, which is what examples use. Rectangular cells (dx not dy) cannot be scaled afterwards.
+#   agree only on rasters whose cells are 1, which is what examples use. Where cells are not square, no factor helps.
 # So: multiply by the cell size, or read the cells off the result and measure them.
 set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 python3 -m venv "$tmp/venv"
-"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check xarray-spatial==0.5.3 xarray==2026.9.0 numpy==2.4.6
+"$tmp/venv/bin/pip" install --quiet --no-compile --disable-pip-version-check \
+  xarray-spatial==0.5.3 xarray==2026.9.0 numpy==2.4.6
 cd "$tmp"
 venv/bin/python -W ignore - <<'PY'
 import numpy as np
