@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -110,7 +111,9 @@ class ArraySPEA2Survival(ArraySurvival, SPEA2Survival):
             return F
         if self.norm is None:
             self.norm = HyperplaneNormalization(F.shape[1])
-        self.norm.update(F)
+        # pymoo turns all warnings of the process off in here.
+        with warnings.catch_warnings():
+            self.norm.update(F)
         span = self.norm.nadir_point - self.norm.ideal_point
         # Over an empty range pymoo's distances are no numbers, and the order of the individuals decides who survives.
         return (F - self.norm.ideal_point) / np.where(span == 0, 1.0, span)

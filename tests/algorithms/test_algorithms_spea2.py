@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 from pymoo.core.population import Population
 from pymoo.optimize import minimize
 
+from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import StrengthAndSmoothness, StrengthTournament, make_algorithm
-from pymoo_gridpath.algorithms.spea2 import SAME_DISTANCE, _distances, _ends, truncate
+from pymoo_gridpath.algorithms.spea2 import SAME_DISTANCE, ArraySPEA2Survival, _distances, _ends, truncate
 
 
 def population(F, turn, cv=None):
@@ -127,3 +129,12 @@ def test_all_representations(name, representation, make_problem):
     assert result.X is not None and (problem.decode(result.X).interfering_cells == 0).all()
     # No path is shorter than the diagonal of seven steps.
     assert (result.F[:, 0] >= 7 * math.sqrt(2) - 1e-9).all()
+
+
+def test_survival_leaves_the_filters_of_warnings_as_they_were():
+    problem = GridPathProblem(OccupancyGrid(np.zeros((6, 6))), (0, 0), (5, 5))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        before = list(warnings.filters)
+        ArraySPEA2Survival(normalize=True).do(problem, population([[1, 2], [2, 1], [3, 3]], [0, 0, 0]), n_survive=2)
+        assert warnings.filters == before
