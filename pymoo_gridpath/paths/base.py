@@ -18,7 +18,7 @@ def sums_of(values: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 def check_summed(field: np.ndarray | BoxedField, *shapes: tuple[int, ...]) -> Any:
     """Return a prepared field if it has one of the shapes, or is known in a box."""
-    if isinstance(field, BoxedField):
+    if isinstance(field, BoxedField) or (type(field) is np.ndarray and field.shape in shapes and field.dtype.kind in "iuf"):
         return field
     expected = f"numbers of shape {' or '.join(map(str, shapes))}, as the representation prepares them"
     field = checks.array("field", field, expected=expected)

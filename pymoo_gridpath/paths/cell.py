@@ -56,12 +56,19 @@ class CellPaths:
         if not self.rows.shape[1] or not checks.within(self.rows, 0, n_cells - 1):
             raise GridPathError(f"rows is {checks.shown(self.rows)} with other values, expected {expected}")
 
+    @classmethod
+    def _unchecked(cls, grid: OccupancyGrid, rows: np.ndarray) -> CellPaths:
+        """Return paths of cells that the package itself worked out, without the time to look at them again."""
+        paths = cls.__new__(cls)
+        paths.grid, paths.rows = grid, rows
+        return paths
+
     def __len__(self) -> int:
         return len(self.rows)
 
     def __getitem__(self, index) -> CellPaths:
         """Return the paths at a slice, a mask or an array of indices."""
-        return CellPaths(self.grid, self.rows[check_chosen(index, len(self))])
+        return CellPaths._unchecked(self.grid, self.rows[check_chosen(index, len(self))])
 
     @functools.cached_property
     def sequences(self) -> Sequences:

@@ -30,7 +30,7 @@ class ColumnPaths:
     Raises
     ------
     GridPathError
-        If the arrays are no such rows, as far as they are looked at: too long a step is found where it is measured.
+        If the arrays are no such rows.
     """
 
     def __init__(self, frame: MonotoneFrame, enter: np.ndarray, leave: np.ndarray):
@@ -39,6 +39,17 @@ class ColumnPaths:
         self.leave = _rows("leave", leave, frame, frame.n_columns)
         if self.enter.shape != self.leave.shape:
             raise GridPathError(f"enter has {len(self.enter)} rows and leave {len(self.leave)}, expected one each for a path")
+        if not checks.within(self.enter[:, 1:] - self.leave[:, :-1], -1, 1):
+            raise GridPathError(
+                "a path enters a column more than one row from where it left the one before, expected one at most"
+            )
+
+    @classmethod
+    def _unchecked(cls, frame: MonotoneFrame, enter: np.ndarray, leave: np.ndarray) -> ColumnPaths:
+        """Return paths of signed rows that the package itself worked out, without the time to look at them again."""
+        paths = cls.__new__(cls)
+        paths.frame, paths.enter, paths.leave = frame, enter, leave
+        return paths
 
     @classmethod
     def through(cls, frame: MonotoneFrame, exit_rows: np.ndarray) -> ColumnPaths:
@@ -55,17 +66,20 @@ class ColumnPaths:
             Within 0 and n_rows - 1.
         """
         checks.instance("frame", frame, MonotoneFrame)
-        exit_rows = _rows("exit_rows", exit_rows, frame, frame.n_columns - 1)
+        return cls._through_unchecked(frame, _rows("exit_rows", exit_rows, frame, frame.n_columns - 1))
+
+    @classmethod
+    def _through_unchecked(cls, frame: MonotoneFrame, exit_rows: np.ndarray) -> ColumnPaths:
         leave = np.empty((len(exit_rows), frame.n_columns), dtype=np.int32)
         leave[:, :-1] = exit_rows
         leave[:, -1] = frame.goal_row
         step = np.sign(leave[:, 1:] - leave[:, :-1])
         if not frame.grid.corner_cutting:
-            step *= frame.flanks_at(leave[:, :-1], step) == 0
+            step *= frame._flanks_at(leave[:, :-1], step) == 0
         enter = np.empty_like(leave)
         enter[:, 0] = frame.start_row
         np.add(leave[:, :-1], step, out=enter[:, 1:])
-        return cls(frame, enter, leave)
+        return cls._unchecked(frame, enter, leave)
 
     def __len__(self) -> int:
         return len(self.enter)
@@ -73,17 +87,12 @@ class ColumnPaths:
     def __getitem__(self, index) -> ColumnPaths:
         """Return the paths at a slice, a mask or an array of indices."""
         index = check_chosen(index, len(self))
-        return ColumnPaths(self.frame, self.enter[index], self.leave[index])
+        return ColumnPaths._unchecked(self.frame, self.enter[index], self.leave[index])
 
     @functools.cached_property
     def _step(self) -> np.ndarray:
         """Rows gained by the step into each column but the first: -1, 0 or 1, int8, shape (N, n_columns - 1)."""
-        step = self.enter[:, 1:] - self.leave[:, :-1]
-        if not checks.within(step, -1, 1):
-            raise GridPathError(
-                "a path enters a column more than one row from where it left the one before, expected one at most"
-            )
-        return step.astype(np.int8)
+        return (self.enter[:, 1:] - self.leave[:, :-1]).astype(np.int8)
 
     @functools.cached_property
     def _climb(self) -> np.ndarray:
@@ -152,7 +161,7 @@ class ColumnPaths:
         """
         count = self.total(self.frame.occupied_sums)
         if not self.frame.grid.corner_cutting:
-            count += self.frame.flanks_at(self.leave[:, :-1], self._step).sum(axis=1)
+            count += self.frame._flanks_at(self.leave[:, :-1], self._step).sum(axis=1)
         return count
 
     def cells(self, index: int) -> np.ndarray:

@@ -174,6 +174,10 @@ class MonotoneFrame:
         row, step = (checks.array(k, v, (None, n), "iu", expected=expected) for k, v in (("row", row), ("step", step)))
         if row.shape != step.shape or not (checks.within(row, 0, self.n_rows - 1) and checks.within(step, -1, 1)):
             raise GridError(f"row and step hold other numbers, or are of different lengths, expected {expected}")
+        return self._flanks_at(row, step)
+
+    def _flanks_at(self, row: np.ndarray, step: np.ndarray) -> np.ndarray:
+        n = self.n_columns - 1
         index = row + np.arange(n) * self.n_rows
         index += (step + np.int64(1)) * (n * self.n_rows)
         return self.flanks.ravel().take(index)

@@ -256,8 +256,10 @@ class GridPathProblem(Problem):
         check_paths(paths)
         F = np.empty((len(paths), self.n_obj))
         for k, (objective, sums) in enumerate(zip(self.objectives, self._sums, strict=True)):
-            what = f"what the objective {shown(objective.name)} returned"
-            values = checks.array(what, objective(paths, sums), expected="one number a path")
+            values = objective(paths, sums)
+            if type(values) is not np.ndarray or values.dtype.kind not in "iuf":
+                what = f"what the objective {shown(objective.name)} returned"
+                values = checks.array(what, values, expected="one number a path")
             if values.shape != (len(paths),):
                 raise GridPathError(
                     f"the objective {shown(objective.name)} returned values of shape {values.shape} for "

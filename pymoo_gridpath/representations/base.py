@@ -314,7 +314,7 @@ class MonotoneRepresentation(Representation):
             N paths from the start to the goal; the last column is climbed to the goal whatever the genes (the paper's end
             fixing). A move that would leave the grid ends at its edge: `repair` is what draws the paper's random row.
         """
-        return ColumnPaths.through(self.frame, self.exit_rows(X))
+        return ColumnPaths._through_unchecked(self.frame, self.exit_rows(X))
 
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
         """Return X with the paper's random edge fixing written into the genes (section 2.1).

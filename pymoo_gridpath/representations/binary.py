@@ -86,7 +86,7 @@ class BinaryRepresentation(MonotoneRepresentation):
         enter = np.empty_like(leave)
         enter[:, 0] = frame.start_row
         np.add(leave[:, :-1], step, out=enter[:, 1:])
-        return ColumnPaths(frame, enter, leave)
+        return ColumnPaths._unchecked(frame, enter, leave)
 
     def encode(self, paths: ColumnPaths) -> np.ndarray:
         """Return the bits of paths, bool, shape (N, n_var).

@@ -121,7 +121,7 @@ class CellSequence(Representation):
         CellPaths
             N paths from the start to the goal, legal or not.
         """
-        return CellPaths(self.grid, self.genes(X))
+        return CellPaths._unchecked(self.grid, self.genes(X))
 
     def encode(self, paths) -> np.ndarray:
         """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""
