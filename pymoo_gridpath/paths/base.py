@@ -1,7 +1,9 @@
-"""What column paths and cell paths share."""
+"""What a batch of decoded paths is, with measures computed from the cells that the paths visit."""
 
 from __future__ import annotations
 
+import functools
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -9,6 +11,185 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField
+from pymoo_gridpath.grid import SQRT2, OccupancyGrid, check_grid
+from pymoo_gridpath.neighbourhood import HEADING_OF, TURN_UNIT
+from pymoo_gridpath.paths.sequences import Sequences, check_sequences
+
+# The heading of a step by the signs of (dx, dy): entry 4 + sign(dx) + 3 * sign(dy).
+_HEADING = HEADING_OF.ravel().astype(np.int8)
+
+
+class Paths(ABC):
+    """N paths on a grid, and what they measure.
+
+    What a representation decodes to. A class of paths of your own needs `grid` and `sequences`; every measure is computed from
+    these, unless the class knows a faster way. For paths that are at hand as sequences there is `SequencePaths`.
+
+    Paths need not be legal; they are measured by these rules, and only a legal path has no interfering cell. The way between
+    two cells that are no neighbours, a *jump*, is as long as the shortest way between them on an empty grid: with ``a >= b``
+    the distances along the two axes, b diagonal and ``a - b`` straight steps. It counts as ``a - 1`` interfering cells, those
+    that it leaves out, and its heading is that of the signs of its dx and dy: straight along an axis, or else diagonal. Only
+    cells in the sequence are visited.
+
+    Attributes
+    ----------
+    grid : OccupancyGrid
+        May be a property.
+    """
+
+    grid: OccupancyGrid
+
+    @property
+    @abstractmethod
+    def sequences(self) -> Sequences:
+        """The cells that the paths visit, in order, as `Sequences` of cells of the whole grid.
+
+        Every path visits a cell, and none follows itself. Measures ask for it again and again: a ``functools.cached_property``.
+        """
+
+    def __len__(self) -> int:
+        return len(self.sequences.offsets) - 1
+
+    def __getitem__(self, index) -> Paths:
+        """Return the paths at a slice, a mask or an array of indices."""
+        chosen = check_chosen(index, len(self))
+        if isinstance(chosen, slice):
+            chosen = np.arange(len(self))[chosen]
+        return SequencePaths(self.grid, self.sequences.take(chosen))
+
+    @functools.cached_property
+    def _steps(self) -> tuple[np.ndarray, np.ndarray]:
+        """The step (dx, dy) from each visited cell, (0, 0) from the last one of a path, each int, shape (n_cells,)."""
+        cells, offsets = self.sequences
+        y = cells // self.grid.width
+        x = cells - y * self.grid.width
+        dx, dy = np.zeros_like(cells), np.zeros_like(cells)
+        np.subtract(x[1:], x[:-1], out=dx[:-1])
+        np.subtract(y[1:], y[:-1], out=dy[:-1])
+        dx[offsets[1:] - 1] = dy[offsets[1:] - 1] = 0
+        return dx, dy
+
+    @functools.cached_property
+    def _reach(self) -> tuple[np.ndarray, np.ndarray]:
+        """The longer and the shorter of |dx| and |dy| of each step, each int, shape (n_cells,)."""
+        across, up = np.abs(self._steps[0]), np.abs(self._steps[1])
+        return np.maximum(across, up), np.minimum(across, up)
+
+    def _sum(self, values: np.ndarray) -> np.ndarray:
+        """Return the sum over each path of a value for each of its cells, or of the steps from them, shape (N,)."""
+        return sums_of(values, self.sequences.offsets)
+
+    @functools.cached_property
+    def n_diagonal(self) -> np.ndarray:
+        """Number of diagonal steps, int, shape (N,)."""
+        return self._sum(self._reach[1])
+
+    @property
+    def n_straight(self) -> np.ndarray:
+        """Number of horizontal and vertical steps, int, shape (N,)."""
+        return self._sum(self._reach[0]) - self.n_diagonal
+
+    @property
+    def length(self) -> np.ndarray:
+        """Length in cells: straight steps count 1, diagonal ones sqrt(2); float, shape (N,)."""
+        return self.n_straight + SQRT2 * self.n_diagonal
+
+    @property
+    def turn(self) -> np.ndarray:
+        """Total turn in degrees, the sum of the absolute heading changes along the path; int, shape (N,)."""
+        offsets = self.sequences.offsets
+        dx, dy = self._steps
+        heading = _HEADING.take(np.sign(dx) + 3 * np.sign(dy) + 4)
+        apart = np.abs(heading[1:] - heading[:-1])
+        units = np.zeros(len(heading), dtype=np.int64)
+        np.minimum(apart, 8 - apart, out=units[1:])
+        # No turn is made at the first and at the last cell of a path.
+        units[offsets[:-1]] = units[offsets[1:] - 1] = 0
+        return TURN_UNIT * self._sum(units)
+
+    def total(self, field: np.ndarray | BoxedField) -> np.ndarray:
+        """Return the sum of a field over the visited cells, start and goal included.
+
+        Parameters
+        ----------
+        field : numpy.ndarray, shape (height * width,)
+            By the index of the cell, as `Representation.prepare` returns it.
+
+        Returns
+        -------
+        numpy.ndarray, shape (N,)
+        """
+        return self._sum(check_summed(field, (self.grid.width * self.grid.height,)).take(self.sequences.cells))
+
+    @property
+    def interfering_cells(self) -> np.ndarray:
+        """Number of occupied cells that each path crosses, int, shape (N,); a legal path has 0, and no other has.
+
+        Where the grid forbids to cut corners, an occupied cell beside a diagonal step counts as crossed by that step. A jump
+        counts one for each cell that it leaves out.
+        """
+        occupied, cells, (dx, dy) = self.grid.occupied.ravel(), self.sequences.cells, self._steps
+        long, short = self._reach
+        count = np.maximum(long - 1, 0)
+        count += occupied.take(cells)
+        if not self.grid.corner_cutting:
+            diagonal = np.flatnonzero((long == 1) & (short == 1))
+            cell = cells[diagonal]
+            count[diagonal] += occupied.take(cell + dx[diagonal])
+            count[diagonal] += occupied.take(cell + dy[diagonal] * self.grid.width)
+        return self._sum(count)
+
+    def cells(self, index: int) -> np.ndarray:
+        """Return the grid cells (x, y) of one path in the order in which it visits them, int, shape (n_cells, 2)."""
+        index = check_place(index, len(self))
+        cells, offsets = self.sequences
+        visited = cells[offsets[index] : offsets[index + 1]]
+        return np.stack([visited % self.grid.width, visited // self.grid.width], axis=-1)
+
+
+class SequencePaths(Paths):
+    """N paths given by the cells that they visit.
+
+    Parameters
+    ----------
+    grid : OccupancyGrid
+    sequences : Sequences
+        Indices of cells, ``y * width + x``, at least one a path. A cell that follows itself counts once: it is a pause.
+
+    Raises
+    ------
+    GridPathError
+        If a path visits no cell, or one that is not on the grid.
+
+    Examples
+    --------
+    >>> grid = OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 0, 0]])
+    >>> paths = SequencePaths(grid, Sequences(np.array([0, 1, 2, 5, 8, 0, 4, 8]), np.array([0, 5, 8])))
+    >>> paths.length.round(3).tolist(), paths.turn.tolist(), paths.interfering_cells.tolist()
+    ([4.0, 2.828], [90, 0], [0, 1])
+    """
+
+    def __init__(self, grid: OccupancyGrid, sequences: Sequences):
+        self.grid = check_grid(grid)
+        cells, offsets = check_sequences(sequences, grid.width * grid.height)
+        if not (np.diff(offsets) > 0).all():
+            raise GridPathError("a path of the sequences visits no cell, expected at least one")
+        moved = np.ones(len(cells), dtype=bool)
+        np.not_equal(cells[1:], cells[:-1], out=moved[1:])
+        moved[offsets[:-1]] = True
+        if not moved.all():
+            cells, offsets = cells[moved], np.concatenate([[0], np.cumsum(moved)])[offsets]
+        self._sequences = Sequences(cells, offsets)
+
+    @property
+    def sequences(self) -> Sequences:
+        """The cells that the paths visit, in order, none following itself."""
+        return self._sequences
+
+
+def check_paths(paths: Paths) -> Paths:
+    """Return a batch of decoded paths if it is one."""
+    return checks.instance("paths", paths, Paths, ", as decode returns them")
 
 
 def sums_of(values: np.ndarray, offsets: np.ndarray) -> np.ndarray:

@@ -8,14 +8,15 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.grid import SQRT2
+from pymoo_gridpath.fields import BoxedField
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.neighbourhood import TURN_UNIT
-from pymoo_gridpath.paths.base import check_chosen, check_place, check_summed, sums_of
+from pymoo_gridpath.paths.base import Paths, check_chosen, check_place, check_summed
 from pymoo_gridpath.paths.frame import MonotoneFrame
 from pymoo_gridpath.paths.sequences import Sequences
 
 
-class ColumnPaths:
+class ColumnPaths(Paths):
     """N paths that advance one column at a time, in the frame of a `MonotoneFrame`.
 
     A path enters column c at row ``enter[:, c]``, moves straight up or down to row ``leave[:, c]``, and goes on to the
@@ -81,6 +82,11 @@ class ColumnPaths:
         np.add(leave[:, :-1], step, out=enter[:, 1:])
         return cls._unchecked(frame, enter, leave)
 
+    @property
+    def grid(self) -> OccupancyGrid:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """The grid of the frame."""
+        return self.frame.grid
+
     def __len__(self) -> int:
         return len(self.enter)
 
@@ -110,11 +116,6 @@ class ColumnPaths:
         return np.abs(self._climb).sum(axis=1) + (self.frame.n_columns - 1) - self.n_diagonal
 
     @property
-    def length(self) -> np.ndarray:
-        """Length in cells: straight steps count 1, diagonal ones sqrt(2); shape (N,)."""
-        return self.n_straight + SQRT2 * self.n_diagonal
-
-    @property
     def turn(self) -> np.ndarray:
         """Total turn in degrees, the sum of the absolute heading changes along the path; int, shape (N,)."""
         # In units of 45 degrees a step s has the heading -1, 0 or 1 and a climb of sign v the heading 2 v, so that the turn
@@ -126,13 +127,13 @@ class ColumnPaths:
         units += (np.abs(step[:, 1:] - step[:, :-1]) * ~climbing[:, 1:-1]).sum(axis=1)
         return TURN_UNIT * units
 
-    def total(self, sums: np.ndarray) -> np.ndarray:
+    def total(self, field: np.ndarray | BoxedField) -> np.ndarray:
         """Return the sum of a field over the visited cells, start and goal included.
 
         Parameters
         ----------
-        sums : numpy.ndarray, shape (n_columns, n_rows + 1) or (height * width,)
-            The field as `MonotoneFrame.prefix_sums` returns it, or by the index of the cell, which is slower.
+        field : numpy.ndarray, shape (n_columns, n_rows + 1) or (height * width,)
+            As `MonotoneFrame.prefix_sums` returns it, or by the index of the cell, which is slower.
 
         Returns
         -------
@@ -140,9 +141,9 @@ class ColumnPaths:
         """
         frame = self.frame
         shapes = (frame.n_columns, frame.n_rows + 1), (frame.grid.width * frame.grid.height,)
-        sums = check_summed(sums, *shapes)
+        sums = check_summed(field, *shapes)
         if sums.ndim == 1:
-            return sums_of(sums.take(self.sequences.cells), self.sequences.offsets)
+            return super().total(sums)
         flat = sums.ravel()
         low, high = self._runs
         return (flat.take(high) - flat.take(low)).sum(axis=1)

@@ -13,11 +13,23 @@ from pymoo_gridpath.errors import GridPathError
 class Sequences(NamedTuple):
     """N paths as the indices of the cells that they visit, one after another in one array.
 
+    What every representation codes and every search finds. Which cells the indices stand for says whoever hands them on:
+    `Paths.sequences` counts those of the whole grid, ``y * width + x``; `Representation.from_sequences` and ``to_sequences``
+    count those of the representation's box, as its `Moves` do, whose ``to_grid`` and ``from_grid`` lead from one to the other.
+
     Attributes
     ----------
     cells : numpy.ndarray of int64, shape (n,)
-        Indices of cells as in `Moves`; path i is ``cells[offsets[i]:offsets[i + 1]]``, from its start to its goal.
+        Path i is ``cells[offsets[i]:offsets[i + 1]]``, from its start to its goal.
     offsets : numpy.ndarray of int64, shape (N + 1,)
+        Rising from 0 to n.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> paths = Sequences(np.array([0, 1, 2, 0, 4, 8]), np.array([0, 3, 6]))
+    >>> paths.lengths.tolist(), paths.take(np.array([1])).cells.tolist()
+    ([3, 3], [0, 4, 8])
     """
 
     cells: np.ndarray
@@ -29,13 +41,18 @@ class Sequences(NamedTuple):
         return np.diff(self.offsets)
 
     def take(self, chosen: np.ndarray) -> Sequences:
-        """Return some of the paths, by a bool for each, shape (N,)."""
-        lengths = self.lengths
-        return Sequences(self.cells[np.repeat(chosen, lengths)], np.cumsum([0, *lengths[chosen]]))
+        """Return some of the paths, by a bool for each, shape (N,), or by their numbers, in that order."""
+        index = np.flatnonzero(chosen) if chosen.dtype == bool else chosen
+        lengths = self.lengths[index]
+        offsets = np.zeros(len(lengths) + 1, dtype=np.int64)
+        np.cumsum(lengths, out=offsets[1:])
+        # How far each cell of what is taken lies from where its path begins, and where that is here.
+        shift = np.repeat(self.offsets[:-1][index] - offsets[:-1], lengths)
+        return Sequences(self.cells[np.arange(offsets[-1]) + shift], offsets)
 
 
 def check_sequences(sequences: Sequences, n_cells: int) -> Sequences:
-    """Return sequences if they are such, of cells of a grid of so many.
+    """Return sequences if they are such, of cells of a grid or box of so many.
 
     Raises
     ------
