@@ -32,6 +32,7 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.optimize import minimize
 
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan
 from pymoo_gridpath.study.report import write_report
 from pymoo_gridpath.study.running.execute import Recorder, execute
@@ -49,20 +50,22 @@ N_STORED = 10_000
 
 def study_of_24(generations: int = 60) -> Plan:
     """Return a plan of 24 runs: 2 problems, 3 algorithms, 4 seeds."""
-    return Study(
-        problems=[
-            ProblemSpec(name="dense", random={"size": 16, "p0": 0.2, "seeds": 1}),
-            ProblemSpec(name="field", map="paper16", representation="cells", obstacles="constraint"),
-        ],
-        algorithms=[
-            AlgorithmSpec(name="paper", preset="ahmed-deb-2013", pop_size=60),
-            AlgorithmSpec(algorithm="SPEA2", pop_size=40),
-            AlgorithmSpec(algorithm="MOEAD", pop_size=40),
-        ],
-        seeds=4,
-        budget={"generations": generations},
-        reference=False,
-    ).plan()
+    return plan_study(
+        Study(
+            problems=[
+                ProblemSpec(name="dense", random={"size": 16, "p0": 0.2, "seeds": 1}),
+                ProblemSpec(name="field", map="paper16", representation="cells", obstacles="constraint"),
+            ],
+            algorithms=[
+                AlgorithmSpec(name="paper", preset="ahmed-deb-2013", pop_size=60),
+                AlgorithmSpec(algorithm="SPEA2", pop_size=40),
+                AlgorithmSpec(algorithm="MOEAD", pop_size=40),
+            ],
+            seeds=4,
+            budget={"generations": generations},
+            reference=False,
+        )
+    )
 
 
 def report(what: str, measured: str, expected: str) -> None:
@@ -215,13 +218,15 @@ def report_files(folder: Path) -> dict[str, bytes]:
 
 
 def overhead(folder: Path) -> None:
-    plan = Study(
-        problems=[ProblemSpec(name="dense", random={"size": 32, "p0": 0.2, "seeds": 1})],
-        algorithms=[AlgorithmSpec(algorithm="NSGA2", pop_size=200)],
-        seeds=N_PAIRS * N_TOGETHER,
-        budget={"generations": 200},
-        reference=False,
-    ).plan()
+    plan = plan_study(
+        Study(
+            problems=[ProblemSpec(name="dense", random={"size": 32, "p0": 0.2, "seeds": 1})],
+            algorithms=[AlgorithmSpec(algorithm="NSGA2", pop_size=200)],
+            seeds=N_PAIRS * N_TOGETHER,
+            budget={"generations": 200},
+            reference=False,
+        )
+    )
     execute(plan.task(plan.runs[0]))  # load what is compiled
 
     def bare(runs) -> None:
@@ -295,12 +300,14 @@ def spent_beside(plan: Plan, folder: Path) -> float:
 
 def store(folder: Path) -> None:
     """Measure with 50 problems, 4 algorithms, 50 seeds: records of real runs with other keys, and noise on what they found."""
-    plan = Study(
-        problems=[ProblemSpec(name="dense", random={"size": 16, "p0": 0.2, "seeds": 50})],
-        algorithms=[AlgorithmSpec(algorithm=name, pop_size=40) for name in ("NSGA2", "SPEA2", "MOEAD", "NSGA3")],
-        seeds=N_STORED // 200,
-        budget={"generations": 100},
-    ).plan()
+    plan = plan_study(
+        Study(
+            problems=[ProblemSpec(name="dense", random={"size": 16, "p0": 0.2, "seeds": 50})],
+            algorithms=[AlgorithmSpec(algorithm=name, pop_size=40) for name in ("NSGA2", "SPEA2", "MOEAD", "NSGA3")],
+            seeds=N_STORED // 200,
+            budget={"generations": 100},
+        )
+    )
     fill(plan, folder / "study")
     size = sum(file.stat().st_size for file in folder.glob("study/runs/*/*.npz"))
     (folder / "plan.pickle").write_bytes(pickle.dumps(plan))

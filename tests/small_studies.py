@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan
 from pymoo_gridpath.study.running.record import History, RunRecord
 from pymoo_gridpath.study.running.store import Store
@@ -56,7 +57,7 @@ def make_plan(n_seeds: int = 2, generations: int = 8, n_problems: int = 2) -> Pl
         seeds=n_seeds,
         budget={"generations": generations},
     )
-    return study.plan()
+    return plan_study(study)
 
 
 def same_runs(plan: Plan, one: Store, other: Store) -> None:

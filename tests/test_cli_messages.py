@@ -15,6 +15,7 @@ from pymoo_gridpath.errors import MapError, MapWarning, StudyError, visible
 from pymoo_gridpath.maps import load_map
 from pymoo_gridpath.progress import COMPILING
 from pymoo_gridpath.study import Study, run_study
+from pymoo_gridpath.study.planning.expand import plan_study
 
 # Clears the screen, rings, and turns the writing around.
 TERMINAL = "a\x1b[2J\x07\u202eb"
@@ -187,7 +188,7 @@ def test_a_study_goes_on_with_the_map_that_it_read(tmp_path):
     path.write_text(ROOM)
     problem = {"map": str(path), "start": (0, 0), "goal": (5, 3)}
     algorithms = [{"algorithm": "nsga2", "pop_size": 10}]
-    plan = Study(name="s", problems=[problem], algorithms=algorithms, seeds=1, budget={"generations": 2}).plan()
+    plan = plan_study(Study(name="s", problems=[problem], algorithms=algorithms, seeds=1, budget={"generations": 2}))
     path.unlink()
     outcome = run_study(plan, tmp_path / "results")
     assert (outcome.n_run, outcome.n_failed) == (len(plan.runs), 0)

@@ -40,6 +40,7 @@ from pymoo_gridpath import (
 from pymoo_gridpath.maps.shipped import ShippedMap
 from pymoo_gridpath.paths import CellPaths, ColumnPaths
 from pymoo_gridpath.paths.frame import MonotoneFrame
+from pymoo_gridpath.study.planning.expand import plan_study
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference.md"
 
@@ -557,7 +558,7 @@ def _command_line(argv):
 
 
 def _studies(w: World) -> dict[str, Call]:
-    plan = w.study.plan()
+    plan = plan_study(w.study)
     key = plan.runs[0].key
     run = w.store.read(key)
     budget = {"generations": 2}
@@ -570,7 +571,7 @@ def _studies(w: World) -> dict[str, Call]:
         "Study.error": (w.study.error, {"message": "wrong", "where": ("problems", 0)}),
         "Study.from_dict": (study.Study.from_dict, {"data": w.study.to_dict()}),
         "Study.line": (w.study.line, {"where": ("problems", 0)}),
-        "Study.plan": (w.study.plan, {}),
+        "plan_study": (study.plan_study, {"study": w.study}),
         "Study.to_dict": (w.study.to_dict, {}),
         "ProblemSpec": (
             study.ProblemSpec,

@@ -30,11 +30,12 @@ from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.study.planning import expand
 from pymoo_gridpath.study.planning.canonical import n_cells
 from pymoo_gridpath.study.planning.estimate import estimate
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.report import write_report
 from pymoo_gridpath.study.running import record, store
 from pymoo_gridpath.study.running.runner import run_study
 from pymoo_gridpath.study.running.store import Store
-from pymoo_gridpath.study.specification import study, toml_file, values
+from pymoo_gridpath.study.specification import toml_file, values
 
 BASE: dict[str, Any] = {
     "name": "fuzzed",
@@ -274,7 +275,7 @@ def study_case(change: Callable, random: Random) -> None:
         file = Path(name) / "study.toml"
         file.write_bytes(text.encode("utf-8", "surrogatepass"))
         (Path(name) / "room.txt").write_text(ROOM)
-        found = toml_file.load_study(file).plan()
+        found = plan_study(toml_file.load_study(file))
         if random.random() < 0.3 and is_small(found):
             estimate(found, found.runs[:2], max_seconds=0.05)
             runs = tuple(random.sample(found.runs, min(3, len(found.runs))))
@@ -306,7 +307,7 @@ def finished() -> tuple[Any, Path]:
     small["algorithms"] = small["algorithms"][1:3]
     (folder / "study.toml").write_text(document(small))
     (folder / "room.txt").write_text(ROOM)
-    plan = toml_file.load_study(folder / "study.toml").plan()
+    plan = plan_study(toml_file.load_study(folder / "study.toml"))
     run_study(plan, folder / "done")
     return plan, folder / "done"
 
@@ -518,7 +519,7 @@ PLANTED = {
     "bytes that are no text escape": lambda: changed(toml_file, "_read", _no_bytes),
     "values are shown whole and raw": lambda: changed(values, "show", str),
     "an unknown key takes seconds": lambda: changed(StudyError, "__init__", _burn(StudyError.__init__)),
-    "a plan takes memory": lambda: changed(study.Study, "plan", _hoard(study.Study.plan)),
+    "a plan takes memory": lambda: changed(sys.modules[__name__], "plan_study", _hoard(plan_study)),
     "deep nesting is a RecursionError": lambda: changed(toml_file, "RecursionError", KeyError),
     "checksums are not looked at": lambda: changed(store, "read_meta", _unchecked),
     "a folder for a run stops the study": lambda: changed(Store, "_read", _as_it_was),

@@ -84,11 +84,12 @@ def _init(arguments) -> int:
 def _check(arguments) -> int:
     """Check a study file, and say how many runs it asks for, how many are stored, and about how long the others will take."""
     from pymoo_gridpath.study.planning.estimate import estimate
+    from pymoo_gridpath.study.planning.expand import plan_study
     from pymoo_gridpath.study.running.store import Store
     from pymoo_gridpath.study.specification.toml_file import load_study
 
     study = load_study(arguments.file)
-    plan = study.plan()
+    plan = plan_study(study)
     print(f"{visible(plan.name)}: {_counts(study, plan)}")
     only_references = sum(run.algorithm is None for run in plan.runs)
     measured = f", {only_references} of them exact fronts to measure against" if only_references else ""
@@ -109,12 +110,13 @@ def _check(arguments) -> int:
 
 def _run(arguments) -> int:
     """Run what is not stored yet of a study; what was stored by an earlier run, even if it was killed, is kept."""
+    from pymoo_gridpath.study.planning.expand import plan_study
     from pymoo_gridpath.study.running.executors import LocalProcesses, dask_executor
     from pymoo_gridpath.study.running.runner import run_study
     from pymoo_gridpath.study.specification.toml_file import load_study
 
     study = load_study(arguments.file)
-    plan = study.plan()
+    plan = plan_study(study)
     folder = _results(arguments)
     print(f"{visible(plan.name)}: {_counts(study, plan)}; {len(plan.runs):,} runs, stored in {visible(folder)}", flush=True)
     with contextlib.ExitStack() as stack:

@@ -16,6 +16,7 @@ _HOMES = {
     "Study": "specification.study",
     "dask_executor": "running.executors",
     "load_study": "specification.toml_file",
+    "plan_study": "planning.expand",
     "run_study": "running.runner",
     "write_report": "report",
 }

@@ -17,6 +17,7 @@ from pymoo_gridpath.cli.study import add_study_commands
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.progress import COMPILING
 from pymoo_gridpath.study.planning.estimate import estimate
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.running.execute import execute
 from pymoo_gridpath.study.running.store import Store
 from pymoo_gridpath.study.specification.study import Study
@@ -71,7 +72,7 @@ def test_init_writes_a_study_and_never_over_a_file(tmp_path, monkeypatch, capsys
 
 def test_starter_is_sound_and_all_of_its_comments_are(tmp_path):
     path = write_starter(tmp_path / "study.toml")
-    plan = load_study(path).plan()
+    plan = plan_study(load_study(path))
     assert 100 < len(plan.runs) < 200
     assert len({problem.group for problem in plan.problems}) == 2
     # What it offers in comments holds too, but for the files that it does not bring.
@@ -81,11 +82,11 @@ def test_starter_is_sound_and_all_of_its_comments_are(tmp_path):
     for line in keys:
         if not line.startswith(("scen", "queries", "algorithm = ")):
             (tmp_path / "one.toml").write_text(text.replace(f"# {line}", _without_alternative(text, line), 1))
-            load_study(tmp_path / "one.toml").plan()
+            plan_study(load_study(tmp_path / "one.toml"))
     exact = text.replace("# [[algorithms]]\n# algorithm", "[[algorithms]]\nalgorithm")
     assert exact != text
     (tmp_path / "one.toml").write_text(exact)
-    assert load_study(tmp_path / "one.toml").plan().algorithms[-1].label == "exact"
+    assert plan_study(load_study(tmp_path / "one.toml")).algorithms[-1].label == "exact"
 
 
 def _without_alternative(text: str, line: str) -> str:
@@ -112,7 +113,7 @@ def test_check(tiny, capsys):
     assert "tiny: 2 problems, 2 algorithms, 2 seeds\nruns: 6\ntime: about " in out
     assert not (tiny / "tiny-results").exists()
     assert call("run", "tiny.toml") == 0
-    key = load_study("tiny.toml").plan().runs[3].key
+    key = plan_study(load_study("tiny.toml")).runs[3].key
     Store("tiny-results").path(key).unlink()
     capsys.readouterr()
     assert call("check", "tiny.toml", "--jobs", 2) == 0
@@ -129,14 +130,16 @@ def test_check_refuses_with_the_line(tiny):
 
 
 def test_estimate_is_near_the_truth():
-    plan = Study.from_dict(
-        {
-            "problems": [{"random": {"size": 16, "p0": 0.2, "seeds": 2}}],
-            "algorithms": [{"algorithm": "NSGA2", "pop_size": 40}, {"algorithm": "SPEA2", "pop_size": 40}],
-            "seeds": 2,
-            "budget": {"generations": 60},
-        }
-    ).plan()
+    plan = plan_study(
+        Study.from_dict(
+            {
+                "problems": [{"random": {"size": 16, "p0": 0.2, "seeds": 2}}],
+                "algorithms": [{"algorithm": "NSGA2", "pop_size": 40}, {"algorithm": "SPEA2", "pop_size": 40}],
+                "seeds": 2,
+                "budget": {"generations": 60},
+            }
+        )
+    )
     found = estimate(plan, max_seconds=1.0)
     begin = time.perf_counter()
     for run in plan.runs:
@@ -165,30 +168,34 @@ def test_estimate_does_not_count_compiling(monkeypatch):
             event.end_event("numba:compile", {})
 
     monkeypatch.setattr(Algorithm, "next", slow)
-    plan = Study.from_dict(
-        {
-            "problems": [{"random": {"size": 8, "p0": 0.1}}],
-            "algorithms": [{"algorithm": "NSGA2", "pop_size": 10}],
-            "seeds": 3,
-            "budget": {"generations": 40},
-            "reference": {"max_labels": 1},
-        }
-    ).plan()
+    plan = plan_study(
+        Study.from_dict(
+            {
+                "problems": [{"random": {"size": 8, "p0": 0.1}}],
+                "algorithms": [{"algorithm": "NSGA2", "pop_size": 10}],
+                "seeds": 3,
+                "budget": {"generations": 40},
+                "reference": {"max_labels": 1},
+            }
+        )
+    )
     runs = [run for run in plan.runs if run.algorithm is not None]
     assert estimate(plan, runs, max_seconds=5.0).seconds == 3 * 40
     assert compiled_yet
 
 
 def test_estimate_keeps_to_its_time_and_says_what_is_open():
-    plan = Study.from_dict(
-        {
-            "problems": [{"random": {"size": 200, "p0": 0.2}, "objectives": ["length", "vulnerability", "turn"]}],
-            "algorithms": [{"algorithm": "NSGA2", "pop_size": 20}],
-            "seeds": 1000,
-            "budget": {"evaluations": 10**7},
-            "reference": {"max_seconds": 5000},
-        }
-    ).plan()
+    plan = plan_study(
+        Study.from_dict(
+            {
+                "problems": [{"random": {"size": 200, "p0": 0.2}, "objectives": ["length", "vulnerability", "turn"]}],
+                "algorithms": [{"algorithm": "NSGA2", "pop_size": 20}],
+                "seeds": 1000,
+                "budget": {"evaluations": 10**7},
+                "reference": {"max_seconds": 5000},
+            }
+        )
+    )
     begin = time.perf_counter()
     found = estimate(plan, max_seconds=1.0)
     assert time.perf_counter() - begin < 20

@@ -23,6 +23,7 @@ from pymoo_gridpath.decision import TradeOffSet
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.operators import default_operators, paper_operators, path_operators
 from pymoo_gridpath.problems import random_dense_grid
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.specification.problem import ProblemSpec
 from pymoo_gridpath.study.specification.study import Study
 
@@ -61,7 +62,7 @@ def test_python_command_line_and_study_have_one_default(corner_cutting, axis, ex
     keys = []
     for given in (None, expected):
         spec = ProblemSpec(map=str(path), start=(0, 0), goal=(5, 4), axis=axis, representation=given)
-        plan = Study(problems=[spec], algorithms=[{"algorithm": "NSGA2"}], seeds=1, budget={"generations": 1}).plan()
+        plan = plan_study(Study(problems=[spec], algorithms=[{"algorithm": "NSGA2"}], seeds=1, budget={"generations": 1}))
         assert plan.problems[0].spec["representation"] == expected
         keys.append([run.key for run in plan.runs])
     assert keys[0] == keys[1], "a study that names the default means the same runs"

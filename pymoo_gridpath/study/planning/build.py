@@ -21,7 +21,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
-from pymoo_gridpath.study.planning.canonical import make_operator
+from pymoo_gridpath.study.specification.operators import make_operator
 
 # Problems that a process keeps, since many runs share one.
 KEPT_PROBLEMS = 4

@@ -10,8 +10,7 @@ from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
-from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, Task, is_exact
-from pymoo_gridpath.study.running.execute import needed_for
+from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, Task, is_exact, needed_for
 
 # Share of the time of a measurement that getting ready for it may take: compiled functions are loaded in the first one.
 _LEAST_SLICE = 0.2

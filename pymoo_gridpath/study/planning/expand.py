@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.representations import REPRESENTATIONS, MonotoneRepresentation, make_representation
 from pymoo_gridpath.study.planning import canonical
@@ -26,8 +27,32 @@ _CHECKED_CELLS = 8_000_000
 _CELLS_A_CHECK = 8_000
 
 
-def expand(study: Study) -> Plan:
-    """Return the plan of a study; see `Study.plan`."""
+def plan_study(study: Study) -> Plan:
+    """Return every run of a study, once all that can be known before a run has been checked.
+
+    Parameters
+    ----------
+    study : Study
+
+    Raises
+    ------
+    StudyError
+        If a map cannot be read, a query cannot be solved, an algorithm cannot solve a problem or stops with an error in its
+        first two generations, or two of them are the same.
+
+    Examples
+    --------
+    >>> study = Study(
+    ...     problems=[{"random": {"size": 16, "p0": 0.2, "seeds": 3}}],
+    ...     algorithms=[{"algorithm": "NSGA2"}, {"algorithm": "SPEA2"}],
+    ...     seeds=5,
+    ...     budget={"generations": 20},
+    ... )
+    >>> plan = plan_study(study)
+    >>> len(plan.problems), len(plan.runs)  # 2 algorithms x 5 seeds and a reference for each problem
+    (3, 33)
+    """
+    checks.instance("study", study, Study)
     problems, groups = plan_problems(study)
     reference = None if study.reference is False else {"algorithm": "exact", **study.reference}
     algorithms = [_algorithm(spec, reference) for spec in study.algorithms]

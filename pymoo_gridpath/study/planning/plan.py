@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
-from pymoo_gridpath.study.planning.canonical import resolve
+from pymoo_gridpath.memory import needed
+from pymoo_gridpath.study.planning.canonical import n_cells, resolve
 
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
 SCHEMA = 2
@@ -191,3 +192,10 @@ def run_key(problem: Mapping[str, Any], algorithm: Mapping[str, Any], budget: Ma
     content = {"schema": SCHEMA, "problem": problem, "algorithm": algorithm, "budget": budget, "seed": seed}
     text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def needed_for(task: Task) -> str:
+    """Return what a run costs in memory, in words."""
+    problem = task.problem
+    turn = "turn" in problem["objectives"]
+    return needed(problem["representation"], n_cells(problem["grid"]), is_exact(task.algorithm), turn)

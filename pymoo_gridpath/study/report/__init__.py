@@ -51,13 +51,13 @@ def write_report(
         If the folder holds no study, an argument is wrong, or a file cannot be written.
     """
     # Imported here, so that the commands that do not report need not wait for matplotlib.
-    from pymoo_gridpath.study.report.blocks import Picture, latex, linked_files, markdown
-    from pymoo_gridpath.study.report.contents import Contents
-    from pymoo_gridpath.study.report.csv_files import csv_files
-    from pymoo_gridpath.study.report.drawing import draw_all
-    from pymoo_gridpath.study.report.figure_style import check_formats
-    from pymoo_gridpath.study.report.page import page
+    from pymoo_gridpath.study.report.figures.style import check_formats
+    from pymoo_gridpath.study.report.page.blocks import Picture, latex, linked_files, markdown
+    from pymoo_gridpath.study.report.page.contents import Contents
+    from pymoo_gridpath.study.report.page.drawing import draw_all
+    from pymoo_gridpath.study.report.page.html import page
     from pymoo_gridpath.study.report.results import collect
+    from pymoo_gridpath.study.report.tables.csv_files import csv_files
     from pymoo_gridpath.study.running.store import Store
 
     forms = check_formats(checks.names("formats", formats))

@@ -15,7 +15,7 @@ from concurrent.futures import Future
 from typing import Any
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study.running.executors import StudyExecutor, describe
+from pymoo_gridpath.study.running.executor import StudyExecutor, describe
 from pymoo_gridpath.versions import versions
 
 # Both are expressions for `eval`, so that neither scheduler nor workers need this package to read them: a scheduler never does,

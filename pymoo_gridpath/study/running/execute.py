@@ -17,10 +17,9 @@ import numpy as np
 from pymoo.core.callback import Callback
 
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
-from pymoo_gridpath.memory import is_want_of_memory, needed, want_of_memory
+from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
-from pymoo_gridpath.study.planning.canonical import n_cells
-from pymoo_gridpath.study.planning.plan import Task, is_exact
+from pymoo_gridpath.study.planning.plan import Task, needed_for
 from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
 from pymoo_gridpath.versions import versions
 
@@ -48,13 +47,6 @@ def execute(task: Task) -> bytes:
             raise KeyboardInterrupt from error
         message = want_of_memory(needed_for(task)) if is_want_of_memory(error) else traceback.format_exc()
     return failed_run(task, message, started, time.perf_counter() - begin)
-
-
-def needed_for(task: Task) -> str:
-    """Return what a run costs in memory, in words."""
-    problem = task.problem
-    turn = "turn" in problem["objectives"]
-    return needed(problem["representation"], n_cells(problem["grid"]), is_exact(task.algorithm), turn)
 
 
 def failed_run(task: Task, message: str, started: str | None = None, seconds: float = 0.0) -> bytes:

@@ -15,6 +15,7 @@ from typing import Any
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.study.running.executor import StudyExecutor, describe
 
 # What numpy's and scipy's libraries and numba read when they are loaded.
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS", "NUMBA_NUM_THREADS")
@@ -25,31 +26,6 @@ _UNKNOWN_CAPACITY = 64
 
 # No computer has use for more.
 _MOST_PROCESSES = 61 if os.name == "nt" else 4096  # Windows waits for no more than 63 things at once
-
-
-class StudyExecutor(Executor):
-    """An executor that a study can ask how it is.
-
-    Attributes
-    ----------
-    capacity : int
-        Tasks worth keeping in flight.
-    hopeless : tuple of exception types
-        Errors of a future that mean that its task killed workers, so that it is not to be submitted again.
-    """
-
-    capacity: int = 1
-    hopeless: tuple[type[BaseException], ...] = ()
-
-    def check(self) -> None:
-        """Raise a GridPathError if nothing in flight can finish any more. Called every few seconds."""
-
-    def recover(self, error: BaseException) -> None:
-        """Get ready to be given tasks again after an error that was none of the run's own, or raise a GridPathError."""
-        raise GridPathError(f"the executor failed with {describe(error)}, expected the bytes of a run") from error
-
-    def abort(self) -> None:
-        """Give up what is in flight, without waiting."""
 
 
 class InProcess(StudyExecutor):
@@ -267,9 +243,3 @@ def study_executor(executor: Executor | None) -> StudyExecutor:
     if executor is None:
         return InProcess()
     return executor if isinstance(executor, StudyExecutor) else _Foreign(executor)
-
-
-def describe(error: BaseException) -> str:
-    """Return an error's type and message on one line."""
-    text = " ".join(str(error).split())
-    return f"{type(error).__name__}: {text}" if text else type(error).__name__

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun
 from pymoo_gridpath.study.running.execute import execute, failed_run
-from pymoo_gridpath.study.running.executors import describe, study_executor
+from pymoo_gridpath.study.running.executor import describe
+from pymoo_gridpath.study.running.executors import study_executor
 from pymoo_gridpath.study.running.progress import StudyProgress
 from pymoo_gridpath.study.running.record import read_meta
 from pymoo_gridpath.study.running.store import Store, StoredRuns
@@ -100,7 +102,7 @@ def run_study(
         beyond repair, or a run could not be handed to it in `MAX_ATTEMPTS` attempts.
     """
     if isinstance(plan, Study):
-        plan = plan.plan()
+        plan = plan_study(plan)
     checks.instance("plan", plan, Plan, " or a Study")
     if executor is not None:
         checks.function("executor", getattr(executor, "submit", executor), "an Executor of concurrent.futures")

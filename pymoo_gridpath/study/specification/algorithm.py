@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.problems import OBSTACLES
-from pymoo_gridpath.study.planning import canonical
+from pymoo_gridpath.study.specification import operators as _operators
 from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
 from pymoo_gridpath.study.specification.parameters import accepted_parameters, parameters
@@ -79,10 +79,10 @@ class AlgorithmSpec:
         set_given(self, "obstacles", check=lambda value, where: values.choice(value, OBSTACLES, where))
         check_problem_settings(self)
         if self.algorithm is not None:
-            set_fields(self, algorithm=canonical.algorithm_name(values.text(self.algorithm, ("algorithm",)), ("algorithm",)))
+            set_fields(self, algorithm=_operators.algorithm_name(values.text(self.algorithm, ("algorithm",)), ("algorithm",)))
         self._check_kind()
         if self.algorithm not in (None, "exact"):
-            set_fields(self, operators=canonical.operators(self.operators, ("operators",)))
+            set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
             self._check_slots(str(self.algorithm))
             given = {} if self.parameters is None else self.parameters
             set_fields(self, parameters=parameters(self.algorithm, given, ("parameters",)))
@@ -107,7 +107,7 @@ class AlgorithmSpec:
             )
         for slot in self.operators:
             if slot != "base" and slot not in accepted:
-                takes = ", ".join(known for known in canonical.SLOTS if known in accepted)
+                takes = ", ".join(known for known in _operators.SLOTS if known in accepted)
                 raise StudyError(f"{algorithm} takes no {slot}, only {takes}", ("operators", slot))
 
     @property

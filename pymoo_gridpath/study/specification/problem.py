@@ -32,7 +32,7 @@ class RandomFamily:
     seeds : int, sequence of int or mapping
         One grid each: how many (from 1 on), a list, or ``{"first": 100, "count": 11}``.
     corner_cutting : bool, default True
-        As in the paper. Where corners may not be cut, a grid may turn out to have no path, which `Study.plan` refuses.
+        As in the paper. Where corners may not be cut, a grid may turn out to have no path, which `plan_study` refuses.
     """
 
     owner: ClassVar[str] = "a random family"

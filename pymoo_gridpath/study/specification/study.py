@@ -1,7 +1,7 @@
 """What a comparison study is: problems, algorithms, seeds and a budget.
 
 The classes are the tables of a study file, see `pymoo_gridpath.study.specification.toml_file`, and check themselves what can be
-checked without reading a map. `Study.plan` checks the rest.
+checked without reading a map. `plan_study` checks the rest.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, StudyError
@@ -18,11 +18,8 @@ from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec, set_fields, to_table
 from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange, RandomFamily
+from pymoo_gridpath.study.specification.source import Source
 from pymoo_gridpath.study.specification.values import Where
-
-if TYPE_CHECKING:
-    from pymoo_gridpath.study.planning.plan import Plan
-    from pymoo_gridpath.study.specification.toml_file import Source
 
 #: Seconds that the exact front which results are measured against may take, unless a study says otherwise.
 REFERENCE_SECONDS = 60.0
@@ -62,9 +59,8 @@ class Study:
     ...     seeds=5,
     ...     budget={"generations": 20},
     ... )
-    >>> plan = study.plan()
-    >>> len(plan.problems), len(plan.runs)  # 2 algorithms x 5 seeds and a reference for each problem
-    (3, 33)
+    >>> len(study.problems), len(study.algorithms), study.seeds
+    (1, 2, (1, 2, 3, 4, 5))
     """
 
     problems: Any
@@ -89,19 +85,6 @@ class Study:
             target=values.real(self.target, ("target",), 0.0, 1.0, open_below=True),
             folder=Path(checks.file_path("folder", self.folder, StudyError)),
         )
-
-    def plan(self) -> Plan:
-        """Return every run of the study, once all that can be known before a run has been checked.
-
-        Raises
-        ------
-        StudyError
-            If a map cannot be read, a query cannot be solved, an algorithm cannot solve a problem or stops with an error in
-            its first two generations, or two of them are the same.
-        """
-        from pymoo_gridpath.study.planning.expand import expand
-
-        return expand(self)
 
     def error(self, message: str, where: Where) -> StudyError:
         """Return an error that says where in the study, or in its file, something is wrong."""

@@ -5,15 +5,13 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.study.specification.source import Source
 from pymoo_gridpath.study.specification.study import Study
-from pymoo_gridpath.study.specification.toml_lines import KeyLines
-from pymoo_gridpath.study.specification.values import Where
 
 # Of a study of a thousand problems, a tenth.
 _MOST_BYTES = 2_000_000
@@ -22,30 +20,6 @@ _MANY_PARTS = re.compile(r"""(?<![\w."'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){50}""")
 
 #: What a new study file is called.
 STARTER_NAME = "study.toml"
-
-
-@dataclass(frozen=True)
-class Source:
-    """The file that a study was read from, for messages.
-
-    Attributes
-    ----------
-    path : str
-        As it was given.
-    text : str
-        All of it.
-    """
-
-    path: str
-    text: str
-
-    def line(self, where: Where) -> int | None:
-        """Return the line of a place in the study, None if no statement holds it."""
-        return KeyLines(self.text).line(where)
-
-    def error(self, message: str, where: Where) -> StudyError:
-        """Return an error with file and line."""
-        return StudyError(message, where, self.path, self.line(where))
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
@@ -64,7 +38,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     ------
     StudyError
         If the file cannot be read, is no TOML, or describes no study; the message names the line. What takes reading the maps
-        is checked by `Study.plan`.
+        is checked by `plan_study`.
     """
     path = checks.file_path("path", path, StudyError)
     source = Source(path, _read(path))

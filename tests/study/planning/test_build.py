@@ -19,6 +19,7 @@ from pymoo_gridpath.operators import DiscreteSBX, PathMutation, SpliceCrossover,
 from pymoo_gridpath.problems import random_dense_grid
 from pymoo_gridpath.study.planning import build
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_termination, pack_grid
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.specification.study import Study
 
 GRID = random_dense_grid(8, 0.2, 1)
@@ -28,7 +29,7 @@ RANDOM: dict[str, Any] = {"random": {"size": 8, "p0": 0.2}}
 def task_of(problem, algorithm, budget=None):
     """Return the last task of a study of one problem and one algorithm, as a worker gets it."""
     study = {"problems": [problem], "algorithms": [algorithm], "seeds": 1, "budget": budget or {"generations": 4}}
-    plan = Study.from_dict(study).plan()
+    plan = plan_study(Study.from_dict(study))
     task = plan.task(plan.runs[-1])
     return task._replace(problem=json.loads(json.dumps(task.problem)), algorithm=json.loads(json.dumps(task.algorithm)))
 

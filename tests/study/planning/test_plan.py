@@ -19,7 +19,9 @@ from pymoo_gridpath.operators import paper_operators, path_operators
 from pymoo_gridpath.problems import GridPathProblem
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_grid, build_problem
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan, is_exact
+from pymoo_gridpath.study.specification.operators import make_operator
 from pymoo_gridpath.study.specification.study import AlgorithmSpec, ProblemSpec, Study
 from pymoo_gridpath.study.specification.toml_file import load_study
 
@@ -28,9 +30,11 @@ NSGA2 = {"algorithm": "NSGA2", "pop_size": 10}
 
 
 def make(problems=(RANDOM,), algorithms=(NSGA2,), seeds=2, budget=None, **others) -> Plan:
-    return Study.from_dict(
-        {"problems": problems, "algorithms": algorithms, "seeds": seeds, "budget": budget or {"generations": 3}, **others}
-    ).plan()
+    return plan_study(
+        Study.from_dict(
+            {"problems": problems, "algorithms": algorithms, "seeds": seeds, "budget": budget or {"generations": 3}, **others}
+        )
+    )
 
 
 def keys(problem=RANDOM, algorithm=NSGA2, **others) -> set[str]:
@@ -147,7 +151,7 @@ def arena_plan(arena, queries="", more="", algorithm="pop_size = 4"):
         {algorithm}
     """
     (arena / "tiny.toml").write_text(text)
-    return load_study(arena / "tiny.toml").plan()
+    return plan_study(load_study(arena / "tiny.toml"))
 
 
 @pytest.mark.parametrize(
@@ -229,7 +233,7 @@ def test_defaults_of_the_command_line(tmp_path):
         folder=tmp_path,
     )
     # A file beside the study goes before the shipped map of that name.
-    assert study.plan().problems[0].spec["grid"]["width"] == 3
+    assert plan_study(study).problems[0].spec["grid"]["width"] == 3
 
 
 def test_missing_query(tmp_path):
@@ -456,7 +460,7 @@ def test_named_sets_are_those_of_the_factories(representation, base):
         if spec == "paper":
             assert (slot, paper) == ("mutation", True)
             continue
-        made = canonical.make_operator(slot, spec)
+        made = make_operator(slot, spec)
         assert type(made) is type(expected[slot])
         assert settings_of(made) == settings_of(expected[slot])
 

@@ -15,6 +15,7 @@ from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.planning import trial
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import is_exact
 from pymoo_gridpath.study.running.execute import execute
 from pymoo_gridpath.study.running.record import from_bytes
@@ -27,16 +28,18 @@ POINTS = [[10, 1], [12, 0.5]]
 
 def plan_of(algorithm, problem=None, **others):
     """Return the plan of a study of one algorithm, or of several, on one random grid."""
-    return Study.from_dict(
-        {
-            "problems": [{"random": {"size": 8, "p0": 0.2}} | (problem or {})],
-            "algorithms": [algorithm] if isinstance(algorithm, dict) else algorithm,
-            "seeds": 1,
-            "budget": {"generations": 3},
-            "reference": False,
-            **others,
-        }
-    ).plan()
+    return plan_study(
+        Study.from_dict(
+            {
+                "problems": [{"random": {"size": 8, "p0": 0.2}} | (problem or {})],
+                "algorithms": [algorithm] if isinstance(algorithm, dict) else algorithm,
+                "seeds": 1,
+                "budget": {"generations": 3},
+                "reference": False,
+                **others,
+            }
+        )
+    )
 
 
 def refusal(algorithm, problem=None, **others) -> str:
@@ -78,7 +81,7 @@ operators = {{ {slot} = "Mixed{slot.capitalize()}" }}
 """
     )
     with pytest.raises(StudyError) as info:
-        load_study(path).plan()
+        plan_study(load_study(path))
     assert str(info.value) == (
         f"{path}, line 8: 'own' fails on the problem 'random-8-0.2': "
         f"the mixed operators need the mixed representation, the problem has {representation}"
@@ -174,9 +177,11 @@ def test_every_run_ends_where_there_are_but_few_paths(size, monkeypatch):
         if row.max_objectives is None
     ]
     problem = {"random": {"size": size, "p0": 1.0}, "representation": "cells"}
-    plan = Study.from_dict(
-        {"problems": [problem], "algorithms": algorithms, "seeds": 1, "budget": {"evaluations": 80}, "reference": False}
-    ).plan()
+    plan = plan_study(
+        Study.from_dict(
+            {"problems": [problem], "algorithms": algorithms, "seeds": 1, "budget": {"evaluations": 80}, "reference": False}
+        )
+    )
     records = [from_bytes(execute(plan.task(run))) for run in plan.runs]
     assert len(records) > 15 and all(record.status == "finished" and len(record.F) for record in records)
     stopped = [record for record in records if record.message]

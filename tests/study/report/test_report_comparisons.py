@@ -8,10 +8,10 @@ import synthetic_study as made
 from synthetic_study import rows, texts
 
 from pymoo_gridpath.study.report import write_report
-from pymoo_gridpath.study.report.comparisons import compare, compare_each
-from pymoo_gridpath.study.report.csv_files import Family, csv_files
 from pymoo_gridpath.study.report.results import collect
-from pymoo_gridpath.study.report.statistics import critical_difference
+from pymoo_gridpath.study.report.statistics.comparisons import compare, compare_each
+from pymoo_gridpath.study.report.statistics.significance import critical_difference
+from pymoo_gridpath.study.report.tables.csv_files import Family, csv_files
 
 
 def results_of(tmp_path, n_problems, n_algorithms, n_seeds):

@@ -10,12 +10,12 @@ import synthetic_study as made
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from pymoo_gridpath.study.report.figure_style import algorithm_styles, rendered, report_style
-from pymoo_gridpath.study.report.front_plots import attainment_surfaces, plot_attainment, plot_fronts
-from pymoo_gridpath.study.report.plots import band, plot_convergence, plot_ranks, plot_ratios
+from pymoo_gridpath.study.report.figures.fronts import attainment_surfaces, plot_attainment, plot_fronts
+from pymoo_gridpath.study.report.figures.plots import band, plot_convergence, plot_ranks, plot_ratios
+from pymoo_gridpath.study.report.figures.stretched_axis import scale_sentence, stretch_unit
+from pymoo_gridpath.study.report.figures.style import algorithm_styles, rendered, report_style
 from pymoo_gridpath.study.report.results import Curve, collect
-from pymoo_gridpath.study.report.statistics import friedman
-from pymoo_gridpath.study.report.stretched_axis import scale_sentence, stretch_unit
+from pymoo_gridpath.study.report.statistics.significance import friedman
 
 
 def test_attainment_surfaces_are_attained_by_so_many_runs():

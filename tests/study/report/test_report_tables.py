@@ -10,11 +10,12 @@ import synthetic_study as made
 from synthetic_study import texts
 
 from pymoo_gridpath.study import AlgorithmSpec, ProblemSpec, Store, Study
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.report import write_report
-from pymoo_gridpath.study.report.blocks import Fold, markdown
+from pymoo_gridpath.study.report.page.blocks import Fold, markdown
+from pymoo_gridpath.study.report.page.settings import settings_blocks
 from pymoo_gridpath.study.report.results import collect
-from pymoo_gridpath.study.report.settings import settings_blocks
-from pymoo_gridpath.study.report.tables import (
+from pymoo_gridpath.study.report.tables.table import (
     NOTHING,
     Table,
     escape_latex,
@@ -119,7 +120,7 @@ def test_in_markdown_a_folded_table_has_one_title():
 def tables_of(tmp_path, study):
     """Return the tables of a study's settings by name, with rows as dictionaries."""
     store = Store(tmp_path)
-    store.write_plan(study.plan())
+    store.write_plan(plan_study(study))
     blocks = list(settings_blocks(collect(store), times=False))
     blocks += [inner for block in blocks if isinstance(block, Fold) for inner in block.blocks]
     tables = {block.name: block for block in blocks if isinstance(block, Table)}
@@ -161,7 +162,7 @@ def test_the_settings_say_what_problems_are(tmp_path):
     random, plain = tables["problems"]
     assert (random["number"], random["grid"]) == ("4", "random, 8 x 8 cells, p0 = 0.2, seeds 3 to 5, 9")
     assert (random["query"], random["representation"], random["obstacles"]) == ("0,0 to 7,7", "integer", "penalty of 2 a cell")
-    digest = study.plan().problems[-1].spec["grid"]["digest"]
+    digest = plan_study(study).problems[-1].spec["grid"]["digest"]
     assert plain["grid"] == f"paper16, 16 x 16 cells, digest {digest[:8]}" and plain["obstacles"] == "constraint"
     assert (plain["query"], plain["objectives"], plain["representation"]) == ("0,1 to 15,15", "length, vulnerability", "cells")
     assert [row["grid"].rsplit(" ", 1)[1] for row in tables["each-problem"][:4]] == ["3", "4", "5", "9"]

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from pymoo_gridpath.study.report import statistics
+from pymoo_gridpath.study.report.statistics import significance
 
 # Few different values, so that ties abound.
 TIED = st.integers(0, 3).map(float)
@@ -54,7 +54,7 @@ def two_sided(values, observed):
 def test_mann_whitney_counts_all_ways_to_share_out_ranks(x, y):
     ranks = stats.rankdata(x + y)
     sums = [sum(ranks[list(chosen)]) for chosen in itertools.combinations(range(len(ranks)), len(x))]
-    outcome = statistics.mann_whitney(np.array(x), np.array(y))
+    outcome = significance.mann_whitney(np.array(x), np.array(y))
     assert outcome.p == pytest.approx(two_sided(sums, sum(ranks[: len(x)])), abs=1e-12)
     assert outcome.statistic == sum((a > b) + 0.5 * (a == b) for a in x for b in y)
 
@@ -64,14 +64,14 @@ def test_mann_whitney_without_ties_is_that_of_scipy(n, m):
     rng = np.random.default_rng(n)
     x, y = rng.random(n), rng.random(m) + 0.2
     expected = stats.mannwhitneyu(x, y, method="exact")
-    assert statistics.mann_whitney(x, y) == pytest.approx((expected.statistic, expected.pvalue), rel=1e-9)
+    assert significance.mann_whitney(x, y) == pytest.approx((expected.statistic, expected.pvalue), rel=1e-9)
 
 
 def test_mann_whitney_of_large_samples_is_near_the_exact_one():
     rng = np.random.default_rng(0)
     x, y = rng.random(60), rng.random(60) + 0.12
     exact = stats.mannwhitneyu(x, y, method="exact").pvalue
-    assert statistics.mann_whitney(x, y).p == pytest.approx(exact, rel=0.15)
+    assert significance.mann_whitney(x, y).p == pytest.approx(exact, rel=0.15)
 
 
 @pytest.mark.parametrize(("n", "m"), [(8, 300), (8, 100), (3, 300), (1, 900), (2, 5)])
@@ -79,7 +79,7 @@ def test_mann_whitney_is_the_same_and_soon_done_whichever_sample_is_larger(n, m)
     rng = np.random.default_rng(m)
     x, y = rng.integers(0, 40, n) + 9.0, rng.integers(0, 40, m).astype(float)
     start = time.perf_counter()
-    one, other = statistics.mann_whitney(x, y), statistics.mann_whitney(y, x)
+    one, other = significance.mann_whitney(x, y), significance.mann_whitney(y, x)
     assert time.perf_counter() - start < 5.0
     assert (one.p, one.statistic) == (pytest.approx(other.p, rel=1e-12), n * m - other.statistic)
 
@@ -87,7 +87,7 @@ def test_mann_whitney_is_the_same_and_soon_done_whichever_sample_is_larger(n, m)
 def test_three_runs_against_three_are_never_significant():
     # The normal approximation with its correction for ties says 0.047.
     assert stats.mannwhitneyu([1, 1, 1], [0, 0, 0], method="asymptotic").pvalue < 0.05
-    assert statistics.mann_whitney(np.ones(3), np.zeros(3)).p == pytest.approx(0.1)
+    assert significance.mann_whitney(np.ones(3), np.zeros(3)).p == pytest.approx(0.1)
 
 
 @settings(max_examples=60)
@@ -97,7 +97,7 @@ def test_wilcoxon_counts_all_signs(differences):
     ranks = stats.rankdata(np.abs(d)) if d else np.empty(0)
     sums = [sum(ranks[np.array(signs)]) for signs in itertools.product((False, True), repeat=len(d))] if d else [0.0]
     observed = sum(rank for rank, value in zip(ranks, d, strict=True) if value > 0)
-    outcome = statistics.wilcoxon(np.array(differences))
+    outcome = significance.wilcoxon(np.array(differences))
     assert outcome.p == pytest.approx(two_sided(sums, observed), abs=1e-12)
 
 
@@ -105,14 +105,14 @@ def test_wilcoxon_counts_all_signs(differences):
 def test_wilcoxon_without_ties_is_that_of_scipy(n):
     d = np.random.default_rng(n).normal(0.3, 1.0, n)
     expected = stats.wilcoxon(d, alternative="greater", method="exact").statistic, stats.wilcoxon(d, method="exact").pvalue
-    assert statistics.wilcoxon(d) == pytest.approx(expected, rel=1e-9)
+    assert significance.wilcoxon(d) == pytest.approx(expected, rel=1e-9)
 
 
 def test_wilcoxon_of_very_many_differences_is_near_the_exact_one(monkeypatch):
     d = np.random.default_rng(3).normal(0.12, 1.0, 401)
-    approximate = statistics.wilcoxon(d).p
-    monkeypatch.setattr(statistics, "_MOST_DIFFERENCES", 1000)
-    assert statistics.wilcoxon(d).p == pytest.approx(approximate, rel=0.04)
+    approximate = significance.wilcoxon(d).p
+    monkeypatch.setattr(significance, "_MOST_DIFFERENCES", 1000)
+    assert significance.wilcoxon(d).p == pytest.approx(approximate, rel=0.04)
 
 
 @pytest.mark.parametrize("n", range(1, 6))
@@ -120,34 +120,34 @@ def test_least_p_values_are_those_of_the_best_arrangement(n):
     m = 4
     values = np.arange(n + m, dtype=float)
     arrangements = itertools.combinations(range(n + m), n)
-    least = min(statistics.mann_whitney(values[list(a)], np.delete(values, a)).p for a in arrangements)
-    assert statistics.least_p_mann_whitney(n, m) == pytest.approx(least)
+    least = min(significance.mann_whitney(values[list(a)], np.delete(values, a)).p for a in arrangements)
+    assert significance.least_p_mann_whitney(n, m) == pytest.approx(least)
     signs = itertools.product((-1.0, 1.0), repeat=n)
-    assert statistics.least_p_wilcoxon(n) == pytest.approx(min(statistics.wilcoxon(values[1 : n + 1] * s).p for s in signs))
+    assert significance.least_p_wilcoxon(n) == pytest.approx(min(significance.wilcoxon(values[1 : n + 1] * s).p for s in signs))
 
 
 def test_least_p_of_friedman_is_that_of_equal_orders():
     values = np.tile([3.0, 2.0, 1.0, 0.0], (5, 1))
-    assert statistics.least_p_friedman(4, 5) == pytest.approx(statistics.friedman(values).p)
+    assert significance.least_p_friedman(4, 5) == pytest.approx(significance.friedman(values).p)
 
 
 def test_no_differences_have_p_one():
     same = np.full(5, 0.25)
-    assert statistics.mann_whitney(same, same) == (12.5, 1.0)
-    assert statistics.wilcoxon(np.zeros(5)) == (0.0, 1.0)
-    assert statistics.vargha_delaney(same, same) == 0.5
-    assert statistics.rank_biserial(np.zeros(5)) == 0.0
-    outcome = statistics.friedman(np.ones((6, 3)))
+    assert significance.mann_whitney(same, same) == (12.5, 1.0)
+    assert significance.wilcoxon(np.zeros(5)) == (0.0, 1.0)
+    assert significance.vargha_delaney(same, same) == 0.5
+    assert significance.rank_biserial(np.zeros(5)) == 0.0
+    outcome = significance.friedman(np.ones((6, 3)))
     assert outcome.p == 1.0 and outcome.ranks.tolist() == [2.0, 2.0, 2.0]
 
 
 def test_infinite_values_rank_last():
     x, y = np.array([-np.inf, -np.inf, 3.0]), np.array([4.0, 5.0, 6.0])
-    as_ranked = statistics.mann_whitney(np.array([0.0, 0.0, 3.0]), y)
-    assert statistics.mann_whitney(x, y) == as_ranked
-    d = statistics.paired_differences(x, np.array([-np.inf, 1.0, 2.0]))
+    as_ranked = significance.mann_whitney(np.array([0.0, 0.0, 3.0]), y)
+    assert significance.mann_whitney(x, y) == as_ranked
+    d = significance.paired_differences(x, np.array([-np.inf, 1.0, 2.0]))
     assert d.tolist() == [0.0, -np.inf, 1.0]
-    assert statistics.rank_biserial(d) == pytest.approx((1 - 2) / 3)
+    assert significance.rank_biserial(d) == pytest.approx((1 - 2) / 3)
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ def test_infinite_values_rank_last():
     ],
 )
 def test_holm_of_worked_examples(p, corrected):
-    assert statistics.holm(np.array(p)) == pytest.approx(corrected)
+    assert significance.holm(np.array(p)) == pytest.approx(corrected)
 
 
 @given(st.lists(st.floats(0.0, 0.2), min_size=1, max_size=8), st.sampled_from([0.01, 0.05, 0.1]))
@@ -171,22 +171,22 @@ def test_holm_rejects_what_stepping_down_rejects(p, alpha):
         if not p[k] * (len(p) - step) < alpha:
             break
         rejected[k] = True
-    assert (statistics.holm(np.array(p)) < alpha).tolist() == rejected.tolist()
+    assert (significance.holm(np.array(p)) < alpha).tolist() == rejected.tolist()
 
 
 @given(st.lists(TIED, min_size=1, max_size=6), st.lists(TIED, min_size=1, max_size=6))
 def test_vargha_delaney_counts_pairs(x, y):
     expected = np.mean([(a > b) + 0.5 * (a == b) for a in x for b in y])
-    assert statistics.vargha_delaney(np.array(x), np.array(y)) == pytest.approx(expected)
+    assert significance.vargha_delaney(np.array(x), np.array(y)) == pytest.approx(expected)
 
 
 def test_rank_biserial_of_a_worked_example():
     # Ranks 1 (positive), 2.5 (positive), 2.5 (negative), 4 (positive) of ten in all.
-    assert statistics.rank_biserial(np.array([1.0, 2.0, -2.0, 3.0, 0.0])) == pytest.approx((7.5 - 2.5) / 10)
+    assert significance.rank_biserial(np.array([1.0, 2.0, -2.0, 3.0, 0.0])) == pytest.approx((7.5 - 2.5) / 10)
 
 
 def test_friedman_of_the_published_example():
-    outcome = statistics.friedman(DEMSAR)
+    outcome = significance.friedman(DEMSAR)
     assert outcome.ranks == pytest.approx([3.143, 2.000, 2.893, 1.964], abs=5e-4)
     expected = stats.friedmanchisquare(*DEMSAR.T)
     assert (outcome.statistic, outcome.p) == pytest.approx((expected.statistic, expected.pvalue))
@@ -199,11 +199,11 @@ def test_friedman_of_the_published_example():
 @pytest.mark.parametrize(("k", "q"), list(enumerate([1.960, 2.343, 2.569, 2.728, 2.850, 2.949, 3.031, 3.102, 3.164], start=2)))
 def test_critical_values_are_those_of_the_published_table(k, q):
     # Table 5 of Demsar (2006), which has three decimals.
-    assert statistics.critical_difference(k, 1) / math.sqrt(k * (k + 1) / 6) == pytest.approx(q, abs=0.0015)
+    assert significance.critical_difference(k, 1) / math.sqrt(k * (k + 1) / 6) == pytest.approx(q, abs=0.0015)
 
 
 def test_cliques_are_the_largest_stretches():
     ranks = np.array([1.0, 1.5, 2.4, 4.0, 4.1])
-    assert statistics.cliques(ranks, 1.0) == [(0, 1), (1, 2), (3, 4)]
-    assert statistics.cliques(ranks, 9.0) == [(0, 4)]
-    assert statistics.cliques(ranks, 0.05) == []
+    assert significance.cliques(ranks, 1.0) == [(0, 1), (1, 2), (3, 4)]
+    assert significance.cliques(ranks, 9.0) == [(0, 4)]
+    assert significance.cliques(ranks, 0.05) == []

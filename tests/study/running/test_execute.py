@@ -12,6 +12,7 @@ from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.convergence import ConvergenceRecorder
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Task
 from pymoo_gridpath.study.running.execute import MAX_RECORDS, Recorder, execute
 from pymoo_gridpath.study.running.record import from_bytes
@@ -22,7 +23,7 @@ def one_task(problem: dict, algorithm: dict, budget: dict, seed: int = 1) -> Tas
     study = Study(
         problems=[ProblemSpec(**problem)], algorithms=[AlgorithmSpec(**algorithm)], seeds=[seed], budget=budget, reference=False
     )
-    plan = study.plan()
+    plan = plan_study(study)
     return plan.task(plan.runs[0])
 
 

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.specification.problem import QueryRange
 from pymoo_gridpath.study.specification.study import AlgorithmSpec, ProblemSpec, RandomFamily, Study
 from pymoo_gridpath.study.specification.toml_file import load_study
@@ -45,7 +46,7 @@ def write(tmp_path, text, name="tiny.toml"):
 
 def refused(tmp_path, text) -> StudyError:
     with pytest.raises(StudyError) as info:
-        load_study(write(tmp_path, text)).plan()
+        plan_study(load_study(write(tmp_path, text)))
     return info.value
 
 
@@ -388,7 +389,7 @@ def test_python_objects_make_the_same_study(tmp_path):
     )
     loaded = load_study(write(tmp_path, PLAIN))
     assert study == loaded
-    assert study.plan() == loaded.plan()
+    assert plan_study(study) == plan_study(loaded)
 
 
 def test_to_dict_and_back(tmp_path):
@@ -435,7 +436,7 @@ def test_errors_of_objects_name_the_place():
         budget={"generations": 1},
     )
     with pytest.raises(StudyError, match=re.escape("problems[0].start: goal (4, 4) lies outside")):
-        study.plan()
+        plan_study(study)
     with pytest.raises(StudyError, match="no place in a study file"):
         study.to_dict()
 
@@ -465,7 +466,7 @@ def test_whatever_stands_in_a_study_it_is_taken_or_refused_in_words(data):
     try:
         study = Study.from_dict(tables)
         assert Study.from_dict(study.to_dict()) == study
-        study.plan()
+        plan_study(study)
     except StudyError as error:
         assert "\n" not in str(error)
         assert len(str(error)) < 600

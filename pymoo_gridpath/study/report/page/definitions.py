@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 
 from pymoo_gridpath.quality import SAME
-from pymoo_gridpath.study.report.blocks import Block, Heading, Text
+from pymoo_gridpath.study.report.figures.stretched_axis import SCALE_DEFINITION
+from pymoo_gridpath.study.report.page.blocks import Block, Heading, Text
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.report.stretched_axis import SCALE_DEFINITION
-from pymoo_gridpath.study.report.tables import Table
+from pymoo_gridpath.study.report.tables.table import Table
 
 
 def definition_blocks(results: Results, times: bool) -> list[Block]:

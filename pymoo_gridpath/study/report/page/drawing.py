@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from pymoo_gridpath.study.report.blocks import Block, Drawing, Picture, Text
-from pymoo_gridpath.study.report.figure_style import rendered, report_style
+from pymoo_gridpath.study.report.figures.style import rendered, report_style
+from pymoo_gridpath.study.report.page.blocks import Block, Drawing, Picture, Text
 
 
 def draw_all(blocks: Iterable[Block], formats: Sequence[str]) -> list[Block]:

@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from pymoo_gridpath.quality import quartiles
-from pymoo_gridpath.study.report.figure_style import (
+from pymoo_gridpath.study.report.figures.stretched_axis import stretch, stretch_unit
+from pymoo_gridpath.study.report.figures.style import (
     REFERENCE,
     WIDTH,
     AlgorithmStyle,
@@ -20,8 +21,7 @@ from pymoo_gridpath.study.report.figure_style import (
     shortened,
 )
 from pymoo_gridpath.study.report.results import Curve, Results
-from pymoo_gridpath.study.report.statistics import ALPHA, Friedman, cliques
-from pymoo_gridpath.study.report.stretched_axis import stretch, stretch_unit
+from pymoo_gridpath.study.report.statistics.significance import ALPHA, Friedman, cliques
 
 # Numbers of evaluations at which bands are drawn.
 _STEPS = 121

@@ -9,10 +9,10 @@ import numpy as np
 
 from pymoo_gridpath.quality import quartiles
 from pymoo_gridpath.study.planning.plan import PlannedProblem
-from pymoo_gridpath.study.report.comparisons import Comparison, could_tell
 from pymoo_gridpath.study.report.results import Results, gist
-from pymoo_gridpath.study.report.summary import n_reached
-from pymoo_gridpath.study.report.tables import csv_text
+from pymoo_gridpath.study.report.statistics.comparisons import Comparison, could_tell
+from pymoo_gridpath.study.report.tables.summary import n_reached
+from pymoo_gridpath.study.report.tables.table import csv_text
 
 _MEASURES = ("ratio", "igd_plus", "share", "turn", "evaluations_to_target", "seconds_to_target", "n_eval", "seconds")
 _TIMES = ("seconds_to_target", "seconds")

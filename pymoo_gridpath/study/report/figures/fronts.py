@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 
 from pymoo_gridpath.objectives import OBJECTIVES
 from pymoo_gridpath.quality import SAME, ReferenceFront, merge_fronts
-from pymoo_gridpath.study.report.figure_style import REFERENCE, AlgorithmStyle, legend_above, panel_figure, panel_title
+from pymoo_gridpath.study.report.figures.style import REFERENCE, AlgorithmStyle, legend_above, panel_figure, panel_title
 from pymoo_gridpath.study.report.results import Results
 
 # Lines of attainment surfaces, which differ in grey print too.

@@ -6,15 +6,16 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
-from pymoo_gridpath.study.report import definitions, settings, state, summary
-from pymoo_gridpath.study.report.blocks import Block, Caution, Drawing, Fold, Heading, Text
-from pymoo_gridpath.study.report.comparisons import TESTED, Comparison, compare, compare_each, could_tell
-from pymoo_gridpath.study.report.csv_files import Family
-from pymoo_gridpath.study.report.figure_style import AlgorithmStyle, algorithm_styles
-from pymoo_gridpath.study.report.front_plots import plot_attainment, plot_fronts
-from pymoo_gridpath.study.report.plots import plot_convergence, plot_ranks, plot_ratios
+from pymoo_gridpath.study.report.figures.fronts import plot_attainment, plot_fronts
+from pymoo_gridpath.study.report.figures.plots import plot_convergence, plot_ranks, plot_ratios
+from pymoo_gridpath.study.report.figures.stretched_axis import scale_sentence
+from pymoo_gridpath.study.report.figures.style import AlgorithmStyle, algorithm_styles
+from pymoo_gridpath.study.report.page import definitions, settings, state
+from pymoo_gridpath.study.report.page.blocks import Block, Caution, Drawing, Fold, Heading, Text
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.report.stretched_axis import scale_sentence
+from pymoo_gridpath.study.report.statistics.comparisons import TESTED, Comparison, compare, compare_each, could_tell
+from pymoo_gridpath.study.report.tables import summary
+from pymoo_gridpath.study.report.tables.csv_files import Family
 
 # Beyond these numbers, tables and figures of single problems or groups would bury the page.
 _MOST_PROBLEMS = 40

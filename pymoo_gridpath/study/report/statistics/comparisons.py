@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pymoo_gridpath.study.report import statistics
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.report.statistics import ALPHA
+from pymoo_gridpath.study.report.statistics import significance
+from pymoo_gridpath.study.report.statistics.significance import ALPHA
 
 #: The measures that are tested, with what tables call them and whether larger is better.
 TESTED = {"ratio": ("hypervolume ratio", True), "igd_plus": ("IGD+", False), "turn": ("mean turn", False)}
@@ -51,7 +51,7 @@ class Pair:
 
     @property
     def significant(self) -> bool:
-        """Whether the corrected p value is below `statistics.ALPHA`."""
+        """Whether the corrected p value is below `significance.ALPHA`."""
         return self.p_holm < ALPHA
 
 
@@ -80,7 +80,7 @@ class Comparison:
     algorithms: list[int]
     pairs: list[Pair] = field(default_factory=list)
     n_blocks: int = 1
-    friedman: statistics.Friedman | None = None
+    friedman: significance.Friedman | None = None
     warnings: list[str] = field(default_factory=list)
 
     def beaten_by(self, algorithm: int) -> list[int]:
@@ -92,28 +92,28 @@ class Comparison:
 
     @property
     def could_tell(self) -> bool:
-        """Whether some corrected p value could have been below `statistics.ALPHA`, whatever the results."""
+        """Whether some corrected p value could have been below `significance.ALPHA`, whatever the results."""
         return could_tell([self])
 
     def least_p(self, pair: Pair) -> float:
         """Return the least p value that the test of a pair could have had."""
         if self.over == "seeds":
-            return statistics.least_p_mann_whitney(pair.n_first, pair.n_second)
-        return statistics.least_p_wilcoxon(pair.n_first)
+            return significance.least_p_mann_whitney(pair.n_first, pair.n_second)
+        return significance.least_p_wilcoxon(pair.n_first)
 
     def warn_if_too_few(self) -> None:
         """Add a warning if no result whatever could be significant."""
         if not self.pairs or self.could_tell:
             return
-        least = statistics.holm(np.array([self.least_p(pair) for pair in self.pairs])).min()
+        least = significance.holm(np.array([self.least_p(pair) for pair in self.pairs])).min()
         count = len(self.pairs)
         if self.over == "seeds":
             sizes = sorted({size for pair in self.pairs for size in (pair.n_first, pair.n_second)})
-            needed = _needed(lambda n: count * statistics.least_p_mann_whitney(n, n))
+            needed = _needed(lambda n: count * significance.least_p_mann_whitney(n, n))
             what = f"{_counted(sizes, 'run')} an algorithm"
         else:
             sizes = sorted({pair.n_first for pair in self.pairs})
-            needed = _needed(lambda n: count * statistics.least_p_wilcoxon(n))
+            needed = _needed(lambda n: count * significance.least_p_wilcoxon(n))
             what = _counted(sizes, "problem")
         self.warnings.append(
             f"Too few {'seeds' if self.over == 'seeds' else 'problems'}: with {what} and {count} pair{'s' * (count > 1)} of "
@@ -167,7 +167,7 @@ def compare_each(results: Results, problems: Sequence[int], measure: str) -> lis
 def could_tell(comparisons: Sequence[Comparison]) -> bool:
     """Whether some p value, corrected for all pairs of all comparisons, could have been below `ALPHA`, whatever the results."""
     least = [comparison.least_p(pair) for comparison in comparisons for pair in comparison.pairs]
-    return bool(least) and bool(statistics.holm(np.array(least)).min() < ALPHA)
+    return bool(least) and bool(significance.holm(np.array(least)).min() < ALPHA)
 
 
 def _compare_runs(comparison: Comparison, results: Results, problem: int) -> None:
@@ -175,8 +175,8 @@ def _compare_runs(comparison: Comparison, results: Results, problem: int) -> Non
     drafts = []
     for first, second in itertools.combinations(comparison.algorithms, 2):
         x, y = samples[first], samples[second]
-        outcome = statistics.mann_whitney(x, y)
-        drafts.append(Pair(first, second, len(x), len(y), 0, 0, 0, *outcome, math.nan, statistics.vargha_delaney(x, y)))
+        outcome = significance.mann_whitney(x, y)
+        drafts.append(Pair(first, second, len(x), len(y), 0, 0, 0, *outcome, math.nan, significance.vargha_delaney(x, y)))
     comparison.pairs = _corrected(drafts)
     if len({len(sample) for sample in samples.values()}) > 1:
         sizes = ", ".join(f"{results.algorithms[k]} {len(samples[k])}" for k in comparison.algorithms)
@@ -197,10 +197,10 @@ def _compare_medians(comparison: Comparison, results: Results, problems: Sequenc
     drafts = []
     for i, j in itertools.combinations(range(len(comparison.algorithms)), 2):
         both = ~np.isnan(medians[:, [i, j]]).any(axis=1)
-        d = np.round(statistics.paired_differences(medians[both, i], medians[both, j]), _DECIMALS)
+        d = np.round(significance.paired_differences(medians[both, i], medians[both, j]), _DECIMALS)
         counts = len(d), len(d), int((d > 0).sum()), int((d == 0).sum()), int((d < 0).sum())
         pair = comparison.algorithms[i], comparison.algorithms[j]
-        drafts.append(Pair(*pair, *counts, *statistics.wilcoxon(d), math.nan, statistics.rank_biserial(d)))
+        drafts.append(Pair(*pair, *counts, *significance.wilcoxon(d), math.nan, significance.rank_biserial(d)))
     comparison.pairs = _corrected(drafts)
     complete = medians[~np.isnan(medians).any(axis=1)]
     comparison.n_blocks = len(complete)
@@ -221,9 +221,9 @@ def _compare_medians(comparison: Comparison, results: Results, problems: Sequenc
 
 
 def _rank(comparison: Comparison, medians: np.ndarray) -> None:
-    comparison.friedman = statistics.friedman(medians)
+    comparison.friedman = significance.friedman(medians)
     n, k = medians.shape
-    least = statistics.least_p_friedman(k, n)
+    least = significance.least_p_friedman(k, n)
     if least >= ALPHA:
         comparison.warnings.append(
             f"Too few problems: Friedman's test of {k} algorithms on {n} problems cannot have a p value below "
@@ -238,7 +238,7 @@ def _oriented(results: Results, measure: str, algorithm: int, problems: Sequence
 
 
 def _corrected(pairs: list[Pair]) -> list[Pair]:
-    corrected = statistics.holm(np.array([pair.p for pair in pairs]))
+    corrected = significance.holm(np.array([pair.p for pair in pairs]))
     return [Pair(**{**vars(pair), "p_holm": float(p)}) for pair, p in zip(pairs, corrected, strict=True)]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from pymoo_gridpath.study.report.tables import LATEX_HEAD, Table, escape_latex, escape_markdown
+from pymoo_gridpath.study.report.tables.table import LATEX_HEAD, Table, escape_latex, escape_markdown
 
 # Of a table in LaTeX, which is not broken across pages.
 _MOST_ROWS = 50

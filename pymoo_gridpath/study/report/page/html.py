@@ -6,9 +6,9 @@ import base64
 import html
 from collections.abc import Iterable, Iterator, Sequence
 
-from pymoo_gridpath.study.report.blocks import Block, Caution, Fold, Heading, Listing, Picture, Text
-from pymoo_gridpath.study.report.contents import unique_slugs
-from pymoo_gridpath.study.report.tables import Table
+from pymoo_gridpath.study.report.page.blocks import Block, Caution, Fold, Heading, Listing, Picture, Text
+from pymoo_gridpath.study.report.page.contents import unique_slugs
+from pymoo_gridpath.study.report.tables.table import Table
 
 # Of the page for one of a picture.
 _PIXELS = 0.66

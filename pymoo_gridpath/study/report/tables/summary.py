@@ -7,10 +7,20 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pymoo_gridpath.quality import quartiles
-from pymoo_gridpath.study.report.comparisons import TESTED, Comparison
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.report.statistics import ALPHA
-from pymoo_gridpath.study.report.tables import NOTHING, Table, count, percent, probability, ratio, signed, significant, spread
+from pymoo_gridpath.study.report.statistics.comparisons import TESTED, Comparison
+from pymoo_gridpath.study.report.statistics.significance import ALPHA
+from pymoo_gridpath.study.report.tables.table import (
+    NOTHING,
+    Table,
+    count,
+    percent,
+    probability,
+    ratio,
+    signed,
+    significant,
+    spread,
+)
 
 
 def reference_phrase(results: Results, problems: Sequence[int]) -> str:

@@ -1,0 +1,1 @@
+"""What stands in a report, and its page and text."""
