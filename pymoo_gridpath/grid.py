@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import hashlib
 import math
 import warnings
 from collections.abc import Sequence
@@ -169,6 +170,15 @@ class OccupancyGrid:
     def n_occupied(self) -> int:
         """Number of occupied cells."""
         return int(self._occupied.sum())
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """SHA-256, in hexadecimal, of the size and of which cells are occupied; the one by which files and runs know a grid.
+
+        Of the text ``"{width} {height} "`` and the cells, row by row from the bottom, eight a byte, the first in the highest bit.
+        """
+        cells = np.packbits(self._occupied).data
+        return hashlib.sha256(b"".join((f"{self.width} {self.height} ".encode(), cells))).hexdigest()
 
     def replace(self, **changes) -> OccupancyGrid:
         """Return a copy in which the named constructor arguments are changed.

@@ -10,7 +10,6 @@ import pytest
 
 from pymoo_gridpath import cli
 from pymoo_gridpath.cli import main
-from pymoo_gridpath.decision.provenance import grid_digest
 from pymoo_gridpath.errors import MapError, MapWarning, StudyError, visible
 from pymoo_gridpath.maps import load_map
 from pymoo_gridpath.progress import COMPILING
@@ -179,8 +178,8 @@ def test_a_map_that_goes_while_the_search_runs_loses_nothing(tmp_path, capsys, m
     names = {file.name for file in output.iterdir()}
     assert {"paths.csv", "paths.json", "map.png", "front.png", "convergence.png"} <= names
     record = json.loads((output / "paths.json").read_text())
-    assert record["settings"]["source_map"] == {"occupied_cells": 2, "unknown_cells": None, "sha256": grid_digest(read)}
-    assert record["map"]["sha256"] == grid_digest(read.inflate(0.6))
+    assert record["settings"]["source_map"] == {"occupied_cells": 2, "unknown_cells": None, "sha256": read.digest}
+    assert record["map"]["sha256"] == read.inflate(0.6).digest
 
 
 def test_a_study_goes_on_with_the_map_that_it_read(tmp_path):

@@ -205,7 +205,10 @@ def _maps(w: World) -> dict[str, Call]:
     return {
         "load_map": (maps.load_map, {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose}),
         "load_shipped": (maps.load_shipped, {"name": "office", "corner_cutting": True}),
-        "map_format": (maps.map_format, {"path": w.ros_map}),
+        "format_of": (maps.format_of, {"path": w.ros_map}),
+        "query_of": (maps.query_of, {"path": w.text_map}),
+        "Query": (maps.Query, {**w.query, "radius": 0.1}),
+        "read_string": (maps.read_string, {"path": w.text_map, "limit": 1000}),
         "read_image": (
             maps.read_image,
             {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose},
@@ -217,8 +220,8 @@ def _maps(w: World) -> dict[str, Call]:
         "read_text": (maps.read_text, {"path": w.text_map, "corner_cutting": True, **pose}),
         "read_text_header": (maps.read_text_header, {"path": w.text_map}),
         "shipped_maps": (maps.shipped_maps, {}),
-        "Query": (
-            maps.Query,
+        "ScenQuery": (
+            maps.ScenQuery,
             {"bucket": 0, "map_name": "a", "width": 4, "height": 3, **w.query, "optimal_length": 4.0},
         ),
         "ShippedMap": (ShippedMap, {"name": "a", "title": "A", "path": w.text_map, **w.query, "radius": 0.1}),

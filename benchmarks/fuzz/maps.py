@@ -27,7 +27,7 @@ from harness import main
 from pymoo_gridpath import maps
 from pymoo_gridpath.errors import MapError, visible
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps import _declared, _files, image, load_map, map_format, movingai, read_scen, read_text_header, ros, text
+from pymoo_gridpath.maps import _declared, _files, array, format_of, image, load_map, movingai, read_scen, read_text_header, ros, text
 
 _FOLDER = Path(tempfile.mkdtemp(prefix="fuzzed-maps-"))
 atexit.register(shutil.rmtree, _FOLDER, ignore_errors=True)
@@ -76,7 +76,7 @@ def _silence_libtiff() -> None:
 
 def _read(path: Path, folder: Path) -> tuple[OccupancyGrid | None, MapError | None]:
     """Read a file with every function that takes one; return what `load_map` makes of it."""
-    for reader in (map_format, read_text_header, read_scen):
+    for reader in (format_of, read_text_header, read_scen):
         try:
             reader(path)
         except MapError as error:
@@ -116,7 +116,7 @@ def _letters_unchecked(real):
 
 
 def _with_traceback():
-    real = maps._FORMATS["a NumPy array"]
+    real = array.NumpyFormat.read
 
     def read(path, **options):
         try:
@@ -124,7 +124,7 @@ def _with_traceback():
         except MapError:
             raise KeyError("header") from None
 
-    return mock.patch.dict(maps._FORMATS, {"a NumPy array": read})
+    return mock.patch.object(array.NumpyFormat, "read", staticmethod(read))
 
 
 def _last_key_wins(real):

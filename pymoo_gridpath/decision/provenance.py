@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,22 +15,12 @@ from pymoo_gridpath.exact import ExactResult
 from pymoo_gridpath.grid import OccupancyGrid
 
 
-def grid_digest(grid: OccupancyGrid) -> str:
-    """Return the SHA-256 of the size and of the occupied cells: ``"{width} {height}\\n"``, then a byte 0 or 1 a cell.
-
-    Cells go row by row from the bottom, each from the left.
-    """
-    digest = hashlib.sha256(f"{grid.width} {grid.height}\n".encode())
-    digest.update(np.ascontiguousarray(grid.occupied).data)
-    return digest.hexdigest()
-
-
 def describe_source(grid: OccupancyGrid) -> dict:
     """Return what tells a map as it was read from others; ``unknown_cells`` is None where its format knows none."""
     return {
         "occupied_cells": grid.n_occupied,
         "unknown_cells": None if grid.unknown is None else int(grid.unknown.sum()),
-        "sha256": grid_digest(grid),
+        "sha256": grid.digest,
     }
 
 
@@ -47,7 +36,7 @@ def describe_problem(problem) -> dict:
             "origin": list(grid.origin),
             "corner_cutting": grid.corner_cutting,
             "occupied_cells": grid.n_occupied,
-            "sha256": grid_digest(grid),
+            "sha256": grid.digest,
         },
         "query": {"start": list(problem.start), "goal": list(problem.goal)},
         "settings": {

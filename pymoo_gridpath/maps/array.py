@@ -7,9 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps._files import BLOCK, check_size, make_grid, require_file, shorten
+from pymoo_gridpath.maps._files import BLOCK, check_size, make_grid, require_file
+from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
 MAGIC = b"\x93NUMPY"
 
@@ -54,6 +56,17 @@ def read_npy(
     return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
 
 
+@MAP_FORMATS.register
+class NumpyFormat(MapFormat):
+    """Arrays saved by `numpy.save`, see `read_npy`."""
+
+    name, suffixes = "numpy", (".npy",)
+    read = staticmethod(read_npy)
+
+    def matches(self, head, path):
+        return head.startswith(MAGIC)
+
+
 def _load(path) -> np.ndarray:
     """Load the array in blocks, once the header has said that it is one of ours and the file is as long as it says."""
     with open(path, "rb") as file:
@@ -64,7 +77,7 @@ def _load(path) -> np.ndarray:
         read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
         shape, column_order, dtype = read_header(file)
         if dtype.kind not in "biuf":
-            raise MapError(path, f"the array holds {shorten(dtype)}, expected booleans or the numbers 0 and 1")
+            raise MapError(path, f"the array holds {checks.printable(dtype, 80)}, expected booleans or the numbers 0 and 1")
         if len(shape) != 2:
             raise MapError(path, f"the array has {len(shape)} dimensions, expected 2 (height, width)")
         check_size(path, shape[1], shape[0])

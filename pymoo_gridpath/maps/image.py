@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bisect
 import os
+import re
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,9 +17,11 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps._declared import CountedReader, Tags, check_before, check_exif, check_jpeg, check_png, nodata_of
 from pymoo_gridpath.maps._files import MAX_CELLS, blocks, check_size, check_unknown, make_grid, require_file, shorten, warn
 from pymoo_gridpath.maps._ros_yaml import yaml_of_image
+from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
 # Raster formats only: Pillow would hand some others, such as EPS, to outside programs.
 FORMATS = ("PNG", "PPM", "BMP", "GIF", "JPEG", "TIFF", "WEBP")
+_MAGIC = re.compile(rb"\x89PNG|GIF8|\xff\xd8\xff|BM|II\*\0|MM\0\*|RIFF....WEBP|P[1-6]\s", re.DOTALL)
 WITH_ALPHA = ("LA", "La", "PA", "RGBA", "RGBa")
 
 _WHITE_16 = 2**16 - 1
@@ -159,6 +162,18 @@ def read_image(
     return make_grid(
         path, occupied[::-1], corner_cutting=corner_cutting, resolution=resolution, origin=origin, unknown=unseen[::-1]
     )
+
+
+@MAP_FORMATS.register
+class ImageFormat(MapFormat):
+    """Drawn maps, see `read_image`."""
+
+    name = "image"
+    suffixes = (".png", ".pgm", ".pbm", ".ppm", ".pnm", ".bmp", ".gif", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
+    read = staticmethod(read_image)
+
+    def matches(self, head, path):
+        return _MAGIC.match(head) is not None
 
 
 def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:

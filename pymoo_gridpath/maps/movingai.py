@@ -11,11 +11,13 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_text_bytes, short_line, shorten
+from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
 # The benchmarks' own loader (``Map.cpp`` of HOG2) takes lower-case letters as their capitals, and any other character as
 # ground. The latter is refused here, because a wrong letter is more likely than such ground.
@@ -32,7 +34,7 @@ _SCEN_COLUMNS = "bucket, map, width, height, start column, start row, goal colum
 
 
 @dataclass(frozen=True)
-class Query:
+class ScenQuery:
     """One entry of a ``.scen`` file, in this package's coordinates.
 
     Parameters
@@ -99,7 +101,18 @@ def read_movingai(
     return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
 
 
-def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -> list[Query]:
+@MAP_FORMATS.register
+class MovingAIFormat(MapFormat):
+    """Maps of the MovingAI benchmarks, see `read_movingai`; their queries and voxel maps, which it refuses, are told as well."""
+
+    name, suffixes = "movingai", (".map", ".3dmap")
+    read = staticmethod(read_movingai)
+
+    def matches(self, head, path):
+        return head.removeprefix(b"\xef\xbb\xbf").split(maxsplit=1)[:1] in ([b"type"], [b"voxel"], [b"version"])
+
+
+def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -> list[ScenQuery]:
     """Read the queries of a MovingAI scenario.
 
     Parameters
@@ -111,7 +124,7 @@ def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -
 
     Returns
     -------
-    list of Query
+    list of ScenQuery
         In the order of the file, with start and goal as cells (x, y), y up.
 
     Raises
@@ -147,6 +160,11 @@ def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -
 def _read_header(path, data: bytes) -> tuple[int, int, int, int]:
     """Return width, height, where the first row begins, and its line."""
     title = short_line(path, data, 0, 1)
+    first = title.split()[:1]
+    if first == ["voxel"] or (first != ["type"] and Path(path).suffix.lower() == ".3dmap"):
+        raise MapError(path, "the file is a voxel map in three dimensions (.3dmap of MovingAI), expected a map in two")
+    if first == ["version"]:
+        raise MapError(path, "the file is a list of queries, expected a map; read_scen reads queries")
     if title.split() != ["type", "octile"]:
         raise MapError(path, f"found {shorten(title)}, expected 'type octile'", 1)
     sizes: dict[str, int] = {}
@@ -169,7 +187,7 @@ def _read_header(path, data: bytes) -> tuple[int, int, int, int]:
     return sizes["width"], sizes["height"], start or len(data) + 1, 5
 
 
-def _read_query(path, text: str, line: int) -> Query:
+def _read_query(path, text: str, line: int) -> ScenQuery:
     fields = text.split()
     if len(fields) != 9:
         # A map's name may hold spaces where the columns are separated by tabs.
@@ -192,7 +210,7 @@ def _read_query(path, text: str, line: int) -> Query:
         length = math.nan
     if not (math.isfinite(length) and length >= 0):
         raise MapError(path, f"the length is {shorten(fields[8].strip())}, expected a number of cells, zero or more", line)
-    return Query(bucket, fields[1].strip(), width, height, ends[0], ends[1], length)
+    return ScenQuery(bucket, fields[1].strip(), width, height, ends[0], ends[1], length)
 
 
 def _whole(path, word: str, name: str, line: int) -> int:

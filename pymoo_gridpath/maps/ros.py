@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from pymoo_gridpath.errors import counted
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps._files import blocks, check_unknown, make_grid, warn
 from pymoo_gridpath.maps._ros_yaml import Keys
+from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 from pymoo_gridpath.maps.image import Pixels, read_pixels
 
 MODES = ("trinary", "scale", "raw")
@@ -96,6 +98,18 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
         corner_cutting=corner_cutting,
         unknown=unseen[::-1],
     )
+
+
+@MAP_FORMATS.register
+class RosFormat(MapFormat):
+    """Maps of the ROS map server, see `read_ros`."""
+
+    name, suffixes = "ros", (".yaml", ".yml")
+    read = staticmethod(read_ros)
+
+    def matches(self, head, path):
+        # An image may hold such a line as a comment.
+        return b"\0" not in head and re.search(rb"^image[ \t]*:", head, re.MULTILINE) is not None
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -79,18 +80,37 @@ def load_shipped(name: str, **options) -> OccupancyGrid:
     >>> load_shipped("paper16").shape
     (16, 16)
     """
-    names = shipped_names()
     checks.text("name", name)
-    if name not in names:
+    return read_text(_shipped(name), **options)
+
+
+def file_of(path: str | os.PathLike[str]) -> Path:
+    """Return the file of a map: the one of that path if there is one, else that of the shipped map of that name.
+
+    Raises
+    ------
+    MapError
+        If the path is a bare name, and there is neither.
+    """
+    name, file = checks.file_path("path", path), Path(path)
+    if os.path.isfile(file):
+        return file
+    # A folder does not keep a shipped map from being found; other paths are for the reader to refuse.
+    is_bare = bool(name) and not os.path.exists(name) and file.name == name and not file.suffix
+    return _shipped(name) if is_bare or name in _names() else file
+
+
+def _names() -> list[str]:
+    return sorted(path.stem for path in _FOLDER.glob("*.txt"))
+
+
+def _shipped(name: str) -> Path:
+    """Return the file of a shipped map."""
+    if name not in (names := _names()):
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         hint = f" (did you mean {near[0]!r}?)" if near else ""
         raise MapError(name, f"no such file and no such shipped map{hint}, expected a map file or one of {', '.join(names)}")
-    return read_text(_FOLDER / f"{name}.txt", **options)
-
-
-def shipped_names() -> list[str]:
-    """Return the names of the shipped maps, sorted."""
-    return sorted(path.stem for path in _FOLDER.glob("*.txt"))
+    return _FOLDER / f"{name}.txt"
 
 
 def _describe(path: Path) -> ShippedMap:

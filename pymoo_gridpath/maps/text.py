@@ -32,6 +32,7 @@ from dataclasses import dataclass
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, plain, read_text_bytes, short_line, shorten
+from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat, Query
 
 FREE = ".0"
 OCCUPIED = "#@X1"
@@ -133,6 +134,18 @@ def read_text_header(path: str | os.PathLike[str]) -> TextHeader:
         If the file cannot be read or a header line is wrong; the message names the line.
     """
     return _split(path)[0]
+
+
+@MAP_FORMATS.register
+class TextFormat(MapFormat):
+    """Plain text, see `read_text`."""
+
+    name, suffixes, catch_all = "text", (".txt",), True
+    read = staticmethod(read_text)
+
+    def query(self, path):
+        header = read_text_header(path)
+        return Query(header.start, header.goal, header.radius or 0.0)
 
 
 def _split(path) -> tuple[TextHeader, bytes, int, dict[str, int]]:

@@ -4,7 +4,7 @@ import pytest
 
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps import Query, movingai, read_movingai, read_scen
+from pymoo_gridpath.maps import ScenQuery, movingai, read_movingai, read_scen
 
 SMALL = "type octile\nheight 2\nwidth 4\nmap\n.GS@\nOTW.\n"
 
@@ -74,13 +74,13 @@ ENTRY = "3\tmaps/a b.map\t5\t4\t0\t0\t4\t2\t5.82842712\n"
 def test_queries_are_turned_so_that_y_points_up(write, header):
     (query,) = read_scen(write("a.scen", header + ENTRY))
     # (column, row) from the top left: row 0 of 4 rows is y = 3, row 2 is y = 1.
-    assert query == Query(3, "maps/a b.map", 5, 4, (0, 3), (4, 1), 5.82842712)
+    assert query == ScenQuery(3, "maps/a b.map", 5, 4, (0, 3), (4, 1), 5.82842712)
 
 
 def test_spaces_separate_columns_as_well(write):
     entry = "0 m.map 5 4 1 3 2 3 1\n"
     (query,) = read_scen(write("a.scen", HEADER + entry))
-    assert query == Query(0, "m.map", 5, 4, (1, 0), (2, 0), 1.0)
+    assert query == ScenQuery(0, "m.map", 5, 4, (1, 0), (2, 0), 1.0)
 
 
 def test_a_scenario_agrees_with_its_map(write):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import zlib
@@ -35,15 +34,13 @@ def pack_grid(grid: OccupancyGrid) -> tuple[dict[str, Any], bytes]:
     Returns
     -------
     dict
-        ``digest`` (SHA-256 of shape and cells), ``width``, ``height`` and ``corner_cutting``; names, poses and the resolution
+        ``digest`` (see `OccupancyGrid.digest`), ``width``, ``height`` and ``corner_cutting``; names, poses and the resolution
         change no result, since measures are in cells.
     bytes
         The cells, eight a byte, compressed.
     """
-    cells = np.packbits(grid.occupied).tobytes()
-    digest = hashlib.sha256(f"{grid.width} {grid.height} ".encode() + cells).hexdigest()
-    spec = {"digest": digest, "width": grid.width, "height": grid.height, "corner_cutting": grid.corner_cutting}
-    return spec, zlib.compress(cells)
+    spec = {"digest": grid.digest, "width": grid.width, "height": grid.height, "corner_cutting": grid.corner_cutting}
+    return spec, zlib.compress(np.packbits(grid.occupied).tobytes())
 
 
 def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> OccupancyGrid:
@@ -71,7 +68,7 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
     shape = spec["height"], spec["width"]
     occupied = np.unpackbits(packed, count=shape[0] * shape[1]).reshape(shape).astype(bool)
     grid = OccupancyGrid(occupied, corner_cutting=spec["corner_cutting"])
-    if pack_grid(grid)[0]["digest"] != spec["digest"]:
+    if grid.digest != spec["digest"]:
         raise GridPathError("the cells of the map are not those that were planned with")
     return grid
 

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
-from pymoo_gridpath.maps import load_map, map_format, read_scen, read_text_header, shipped_maps
+from pymoo_gridpath.maps import Query, load_map, query_of, read_scen
+from pymoo_gridpath.maps.queries import check_grown, ends_of
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.planning import canonical
@@ -82,15 +83,14 @@ def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyG
         where = (*place_of(k), "queries" if spec.scen else "start")
         refuse(study, where, about, grid.check_query, start, goal)
         if spec.radius:
-            grow = f"{about}with obstacles grown by the robot's radius of {spec.radius:g} m, "
-            refuse(study, (*place_of(k), "radius"), grow, grown.check_query, start, goal)
+            refuse(study, (*place_of(k), "radius"), about, check_grown, grown, spec.radius, start, goal)
         yield _Item(suffix, content, cells, start, goal)
 
 
 def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[OccupancyGrid, list[tuple[str, Cell, Cell]]]:
     """Return the grid of a problem as it was read, and its queries with what tells them apart."""
     scen = None if spec.scen is None else study.folder / spec.scen
-    known = None
+    known = Query()
     if scen is not None and not scen.is_file():
         raise study.error(f"{scen}: no such file, expected a .scen file of queries", (*place_of(k), "scen"))
     if spec.grid is not None:
@@ -103,17 +103,11 @@ def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[Occupan
         if key not in maps:
             maps[key] = refuse(study, where, "", load_map, path, **options)
         grid = maps[key]
-        known = _known_query(path) if scen is None else None
+        if scen is None and not (spec.start and spec.goal):
+            known = refuse(study, where, "", query_of, path)
     if scen is not None:
         return grid, _scen_queries(study, k, spec, scen, grid)
-    start, goal = spec.start or (known and known.start), spec.goal or (known and known.goal)
-    if not start or not goal:
-        missing = " and no ".join(role for role, cell in (("start", start), ("goal", goal)) if not cell)
-        raise study.error(
-            f"the problem has no {missing}, and the map {grid.name!r} names none; expected a cell [x, y], x from 0 to "
-            f"{grid.width - 1}, y from 0 (bottom) to {grid.height - 1}",
-            place_of(k),
-        )
+    start, goal = refuse(study, place_of(k), "", ends_of, grid, known, spec.start, spec.goal)
     return grid, [("", start, goal)]
 
 
@@ -123,13 +117,6 @@ def _map_path(study: Study, spec: ProblemSpec) -> str:
     beside = study.folder / name
     shipped = not beside.exists() and Path(name).name == name and not Path(name).suffix
     return name if shipped else os.fspath(beside)
-
-
-def _known_query(path: str):
-    """Return what says the query of a shipped map or a text map, or None."""
-    if not Path(path).is_file():
-        return next((item for item in shipped_maps() if item.name == path), None)
-    return read_text_header(path) if map_format(path) == "a plain text map" else None
 
 
 def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: OccupancyGrid) -> list[tuple[str, Cell, Cell]]:
