@@ -119,7 +119,7 @@ class Paths(ABC):
         -------
         numpy.ndarray, shape (N,)
         """
-        return self._sum(check_summed(field, (self.grid.width * self.grid.height,)).take(self.sequences.cells))
+        return self._sum(check_summed(field, (self.grid.occupied.size,)).take(self.sequences.cells))
 
     @property
     def interfering_cells(self) -> np.ndarray:

@@ -140,7 +140,7 @@ class ColumnPaths(Paths):
         numpy.ndarray, shape (N,)
         """
         frame = self.frame
-        shapes = (frame.n_columns, frame.n_rows + 1), (frame.grid.width * frame.grid.height,)
+        shapes = (frame.n_columns, frame.n_rows + 1), (frame.grid.occupied.size,)
         sums = check_summed(field, *shapes)
         if sums.ndim == 1:
             return super().total(sums)

@@ -266,7 +266,8 @@ class GridPathProblem(Problem):
                     f"{counted(len(paths), 'path')}, expected one number a path"
                 )
             F[:, k] = values
-        if np.isnan(F).any():
+        # A minimum is NaN if a number is.
+        if F.size and np.isnan(F.min()):
             i, k = np.argwhere(np.isnan(F))[0]
             raise GridPathError(f"the objective {shown(self.objective_names[k])} returned NaN for path {i}, expected a number")
         return F
@@ -302,7 +303,7 @@ class GridPathProblem(Problem):
         """Warn, once, of genes or generations that come of operators which know nothing of paths."""
         if X.dtype.kind == "f" and (np.rint(X) != X).any():
             what = "genes that are no whole numbers, as operators for real numbers make them, hardly ever code a legal path"
-        elif len(interfering) and interfering.all() and (name := _maker_of_pymoo(algorithm)):
+        elif (name := _maker_of_pymoo(algorithm)) and len(interfering) and interfering.all():
             what = f"there is no legal path among {len(X)} of pymoo's {name}, which knows nothing of paths"
         else:
             return
@@ -321,6 +322,8 @@ class GridPathProblem(Problem):
 
 def _maker_of_pymoo(algorithm) -> str:
     """Return the name of the operator that made the rows under evaluation if it is one that pymoo brings, else nothing."""
+    if algorithm is None:
+        return ""
     if getattr(algorithm, "is_initialized", False):
         maker = getattr(getattr(algorithm, "mating", None), "crossover", None)
     else:
