@@ -335,8 +335,8 @@ def _unknown(grid: OccupancyGrid) -> str | None:
     """Return in words how many cells of a map as read are unknown and what they count as; None if its kind knows none."""
     if grid.unknown is None:
         return None
-    n = int(grid.unknown.sum())
-    meaning = ("occupied" if grid.occupied[grid.unknown].all() else "free") if n else ""
+    n = int(np.count_nonzero(grid.unknown))
+    meaning = ("occupied" if (grid.occupied | ~grid.unknown).all() else "free") if n else ""
     return counted(n, "cell") + (f", {n / grid.unknown.size:.1%}, taken as {meaning}" if n else "")
 
 
