@@ -9,9 +9,10 @@ from pymoo.optimize import minimize
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.decision import TradeOffSet
-from pymoo_gridpath.errors import GridError
+from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.fields import clearance, obstacle_potential
+from pymoo_gridpath.grid import Box
 from pymoo_gridpath.objectives import Objective, Vulnerability
 from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.paths import CellPaths
@@ -174,8 +175,8 @@ def test_grids_that_can_be_reached_are_worked_on_whole():
 def test_boxes_that_are_no_cells_of_the_grid_are_refused(box):
     _, large = pair()
     for use in (large.crop, lambda box: obstacle_potential(large, box=box), lambda box: Mud().field_in(large, box)):
-        with pytest.raises(GridError, match="box is .*, expected a Box of cells of the grid of 400 x 400"):
+        with pytest.raises(GridPathError, match=r"box is .*, expected a Box of cells of the grid of 400 x 400"):
             use(box)
     with pytest.raises(GridError, match=r"start \(400, 0\) lies outside the grid"):
         large.box_of((400, 0))
-    assert large.crop([0, 0, 3, 5]).shape == (5, 3)
+    assert large.crop(Box(0, 0, 3, 5)).shape == (5, 3)
