@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from pymoo_gridpath.study.planning.canonical import resolve
+from pymoo_gridpath.study.planning.stored import check_plan
 
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
 SCHEMA = 2
@@ -157,7 +158,14 @@ class Plan:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Plan:
-        """Return the plan that `to_json` wrote, without grids."""
+        """Return the plan that `to_json` wrote, without grids.
+
+        Raises
+        ------
+        StudyError
+            If it is no such plan: something is missing, of another type, or does not belong together.
+        """
+        check_plan(data)
         return cls(
             **{
                 **data,
