@@ -27,7 +27,6 @@ from unittest.mock import patch
 from harness import main
 
 from pymoo_gridpath.errors import GridPathError, StudyError
-from pymoo_gridpath.study.planning import expand
 from pymoo_gridpath.study.planning.canonical import n_cells
 from pymoo_gridpath.study.planning.estimate import estimate
 from pymoo_gridpath.study.report import drawing, write_report
@@ -465,7 +464,7 @@ def folder_case(damage: Callable, random: Random) -> None:
 KINDS = [
     *(("study file: ", change, study_case) for change in [*OF_DATA, *OF_TEXT] * 4),
     *(("stored runs: ", damage, runs_case) for damage in OF_RUNS),
-    *(("study folder: ", damage, folder_case) for damage in OF_FOLDERS),
+    *(("study folder: ", damage, folder_case) for damage in OF_FOLDERS * 4),
 ]
 
 
@@ -500,10 +499,6 @@ def _hoard(function):
     return large
 
 
-def _plainly(study, where, about, function, *arguments, **options):
-    return function(*arguments, **options)
-
-
 def _no_bytes(path) -> str:
     return Path(path).read_bytes().decode("utf-8")
 
@@ -534,7 +529,7 @@ def _delete(self, path: Path) -> Path:
 
 
 PLANTED = {
-    "errors of the plan escape": lambda: changed(expand, "refuse", _plainly),
+    "a budget is not checked": lambda: changed(study, "_budget", dict),
     "bytes that are no text escape": lambda: changed(toml_file, "_read", _no_bytes),
     "values are shown whole and raw": lambda: changed(values, "show", str),
     "an unknown key takes seconds": lambda: changed(StudyError, "__init__", _burn(StudyError.__init__)),

@@ -326,7 +326,7 @@ def _load(name: str, arguments) -> tuple[OccupancyGrid, ShippedMap | TextHeader 
     """Return the grid of a file or of a shipped map, and the query that it names, if it does."""
     options = {key: getattr(arguments, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")}
     grid = load_map(name, **{key: value for key, value in options.items() if value is not None})
-    if not Path(name).is_file():
+    if not os.path.isfile(name):
         return grid, next((item for item in shipped_maps() if item.name == name), None)
     return grid, read_text_header(name) if map_format(name) == "a plain text map" else None
 

@@ -18,7 +18,7 @@ from pymoo_gridpath.quality import ReferenceFront, first_reaching, merge_fronts
 from pymoo_gridpath.study.planning.canonical import resolve
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, is_exact
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
-from pymoo_gridpath.study.running.store import Store
+from pymoo_gridpath.study.running.store import Store, readable
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,8 +234,9 @@ def collect(store: Store, target: float | None = None) -> Results:
 
 def _read(store: Store, key: str) -> tuple[RunRecord | None, str]:
     """Return a record, if there is one, without its genes, and its status."""
-    if not store.path(key).exists():
-        return None, "missing"
+    with readable(store.folder):
+        if not store.path(key).exists():
+            return None, "missing"
     try:
         record = store.read(key, genes=False)
     except DamagedRecordError:
