@@ -9,6 +9,9 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+# Letters of a key that a message shows where it says in which place of a study something is wrong.
+_LONGEST_KEY = 80
+
 
 class GridPathError(ValueError):
     """Base of every error that this package raises about its input."""
@@ -69,7 +72,9 @@ class StudyError(GridPathError):
         if self.path is not None:
             place = visible(path) if line is None else f"{visible(path)}, line {line}"
         else:
-            place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in self.where).lstrip(".")
+            # Keys are the user's, of any length and letters.
+            parts = [f"[{part}]" if isinstance(part, int) else f".{visible(part[:_LONGEST_KEY])}" for part in self.where]
+            place = "".join(parts).lstrip(".")
         super().__init__(f"{place}: {message}" if place else message)
 
     def __reduce__(self):

@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridError
-from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_box, check_grid
 
 # Potentials are rounded to multiples of this, about 9e-10. Sums of such numbers are exact in double precision (up to
 # 2**23), whatever their order, so paths over the same cells never differ by rounding noise.
@@ -40,7 +40,7 @@ def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5, box: Box | No
     Raises
     ------
     GridError
-        If the grid is none, or the variance is not a positive number.
+        If the grid is none, the box is none of its cells, or the variance is not a positive number.
 
     References
     ----------
@@ -53,7 +53,7 @@ def obstacle_potential(grid: OccupancyGrid, variance: float = 0.5, box: Box | No
     reach = math.ceil(min(math.sqrt(76.0 * variance), max(grid.shape)))
     with np.errstate(over="ignore"):  # of the narrowest bells, which are 0 beyond their own cell
         kernel = np.exp(-(np.arange(-reach, reach + 1.0) ** 2) / (2.0 * variance))
-    box = grid.whole if box is None else box
+    box = grid.whole if box is None else check_box(box, grid)
     part = box.grown(reach, grid.shape)
     field = grid.occupied[part.slices].astype(float)
     for axis in (0, 1):

@@ -66,7 +66,8 @@ class OccupancyGrid:
     Parameters
     ----------
     occupied : array_like of bool, shape (height, width)
-        True where a cell is occupied. Row 0 is the bottom row. The array is copied.
+        True where a cell is occupied. Row 0 is the bottom row. The array is copied, unless it is one of booleans that is
+        read-only, row by row, and no view of another.
     resolution : float, default 1.0
         Side of a cell in metres.
     origin : (float, float) or (float, float, float), default (0, 0, 0)
@@ -78,7 +79,7 @@ class OccupancyGrid:
         What figures and files call this grid.
     unknown : array_like of bool, shape (height, width), optional
         True where the map did not say whether a cell is free; ``occupied`` says what it was taken for. None, the default, where
-        maps of this kind know no unknown cells. Copied, and no part of what makes two grids equal.
+        maps of this kind know no unknown cells. Copied as ``occupied``, and no part of what makes two grids equal.
 
     Raises
     ------
@@ -169,7 +170,7 @@ class OccupancyGrid:
     @property
     def n_occupied(self) -> int:
         """Number of occupied cells."""
-        return int(self._occupied.sum())
+        return int(np.count_nonzero(self._occupied))
 
     @functools.cached_property
     def digest(self) -> str:
@@ -399,8 +400,15 @@ class OccupancyGrid:
         It holds all cells that can be reached from the free cell, and one more on each side, so that every obstacle which is
         the nearest one of a reachable cell lies in it. A large grid of which little can be reached so takes no more time and
         memory than a small one. Of any other grid it is the whole.
+
+        Raises
+        ------
+        GridError
+            If it is no cell of the grid.
         """
-        x, y = start
+        x, y = _as_cell("start", start)
+        if not self.contains((x, y)):
+            self.check_cell((x, y), "start")
         if self._occupied.size < _LEAST_BOXED or self._occupied[y, x]:
             return self.whole
         rows, columns = self._region_slices[self.regions[y, x] - 1]
@@ -414,6 +422,7 @@ class OccupancyGrid:
 
     def crop(self, box: Box) -> OccupancyGrid:
         """Return the grid of the cells in a box, each where it was in metres; the grid itself if these are all."""
+        box = check_box(box, self)
         if box == self.whole:
             return self
         x0, y0, yaw = self._origin
@@ -461,6 +470,7 @@ class OccupancyGrid:
         hits = signal.oaconvolve(self._occupied[part].astype(float), disc.astype(float), mode="same")
         inflated = self._occupied.copy()
         inflated[part] |= hits > 0.5
+        inflated.flags.writeable = False
         return self.replace(occupied=inflated)
 
     def move_graph(self) -> sparse.csr_array:
@@ -506,20 +516,43 @@ class OccupancyGrid:
         numpy.ndarray, shape (height, width)
             ``inf`` where no path leads (within ``limit``).
         """
-        x, y = self.check_cell(start, "start")
+        start = self.check_cell(start, "start")
         limit = checks.number("limit", limit, 0.0, infinite=True, expected="a length in cells, zero or more", error=GridError)
-        box = self.box_of((x, y))
+        box = self.box_of(start)
+        lengths = np.full(self.shape, np.inf)
+        lengths[box.slices] = self._lengths_in(box, start, limit)
+        return lengths
+
+    def shortest_length(self, start: Sequence[int], goal: Sequence[int]) -> float:
+        """Return the length in cells of the shortest path between two free cells; ``inf`` if no path joins them."""
+        start, (x, y) = self.check_cell(start, "start", goal), self.check_cell(goal, "goal", start)
+        if self.regions[start[1], start[0]] != self.regions[y, x]:
+            return math.inf
+        box = self.box_of(start)
+        return float(self._lengths_in(box, start)[y - box.y0, x - box.x0])
+
+    def _lengths_in(self, box: Box, start: Cell, limit: float = math.inf) -> np.ndarray:
+        """Return what `shortest_lengths` does, in the box of the start alone."""
+        x, y = start
         if box not in self._graphs:
             self._graphs[box] = self.crop(box).move_graph()
-        rows, columns = box.shape
-        found = csgraph.dijkstra(self._graphs[box], indices=(y - box.y0) * columns + x - box.x0, limit=limit)
-        lengths = np.full(self.shape, np.inf)
-        lengths[box.slices] = found.reshape(rows, columns)
-        return lengths
+        found = csgraph.dijkstra(self._graphs[box], indices=(y - box.y0) * box.shape[1] + x - box.x0, limit=limit)
+        return found.reshape(box.shape)
 
     @functools.cached_property
     def _graphs(self) -> dict[Box, sparse.csr_array]:
         return {}
+
+
+def check_box(box: Box, grid: OccupancyGrid) -> Box:
+    """Return what is given as a box of cells of a grid if it is one."""
+    expected = f"a Box of cells of the grid of {check_grid(grid).width} x {grid.height}"
+    ends = [checks.whole("box", end, expected=expected) for end in checks.items("box", box, expected)]
+    if len(ends) == 4:
+        x0, y0, x1, y1 = ends
+        if 0 <= x0 < x1 <= grid.width and 0 <= y0 < y1 <= grid.height:
+            return Box(x0, y0, x1, y1)
+    raise GridError(f"box is {shown(ends)}, expected {expected}")
 
 
 def check_grid(grid: OccupancyGrid) -> OccupancyGrid:
@@ -563,7 +596,7 @@ def _pairs(name: str, values: ArrayLike, what: str) -> np.ndarray:
 
 
 def _as_cells(name: str, cells: ArrayLike) -> np.ndarray:
-    """Return a read-only bool copy of an array of 0 and 1."""
+    """Return a read-only bool copy of an array of 0 and 1, or the array itself if it is as such a copy."""
     values = "0 (free) and 1 (occupied)" if name == "occupied" else "0 and 1"
     array = checks.array(name, cells, expected=f"a two-dimensional array of booleans, or of {values}", error=GridError)
     if array.ndim != 2:
@@ -572,6 +605,9 @@ def _as_cells(name: str, cells: ArrayLike) -> np.ndarray:
         raise GridError(f"a grid needs at least one cell, got an array of shape {array.shape}")
     if array.dtype != bool and not np.isin(array, (0, 1)).all():
         raise GridError(f"a grid needs an array of booleans, or of {values}, as {name} cells, got other values")
+    flags = array.flags
+    if type(array) is np.ndarray and array.dtype == bool and flags.owndata and flags.c_contiguous and not flags.writeable:
+        return array  # nobody writes into it, and on large maps copies are what takes the memory
     # Row by row whatever the order of the given one, for its bytes and its flat view are those of the grid.
     copy = array.astype(bool, order="C")
     copy.flags.writeable = False

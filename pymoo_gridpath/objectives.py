@@ -12,7 +12,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField, check_costs, check_variance, obstacle_potential
-from pymoo_gridpath.grid import Box, OccupancyGrid
+from pymoo_gridpath.grid import Box, OccupancyGrid, check_box
 from pymoo_gridpath.paths import TURN_UNIT
 
 
@@ -67,6 +67,7 @@ class Objective(ABC):
         What `field` says of these cells. Override it too where that can be had without the cost of all other cells.
         """
         whole = self.field(grid)
+        box = check_box(box, grid)
         return whole if whole is None or box == grid.whole else np.asarray(whole)[box.slices]
 
     @abstractmethod

@@ -142,6 +142,8 @@ def test_shortest_lengths_and_regions_agree_with_a_plain_search(seed, corner_cut
     for y in range(grid.height):
         for x in range(grid.width):
             assert lengths[y, x] == pytest.approx(expected.get((x, y), math.inf))
+            if grid.is_free((x, y)):
+                assert grid.shortest_length((0, 0), (x, y)) == lengths[y, x]
             reached = grid.regions[y, x] == grid.regions[0, 0] and not grid.occupied[y, x]
             assert reached == ((x, y) in expected)
 
@@ -176,6 +178,27 @@ def test_a_radius_without_effect_is_said(radius, grows, recwarn):
     said = [str(item.message) for item in recwarn if item.category is GridPathWarning]
     assert len(said) == (not grows)
     assert all(f"{radius:g} m is at most half a cell of 'hall', 0.5 m wide" in text for text in said)
+
+
+def test_read_only_cells_are_shared_and_all_others_copied():
+    cells = np.array([[False, True, False], [False, False, True]])
+    grid = OccupancyGrid(cells, unknown=cells)
+    cells[0, 0] = True
+    assert not grid.occupied[0, 0] and not grid.unknown[0, 0]
+    kept = cells.copy()
+    kept.flags.writeable = False
+    assert OccupancyGrid(kept).occupied is kept and OccupancyGrid(kept, unknown=kept).unknown is kept
+    for changed in (grid.replace(name="b"), grid.inflate(1.0), grid.replace(occupied=kept)):
+        assert changed.unknown is grid.unknown
+    assert grid.replace(corner_cutting=True).occupied is grid.occupied
+    # Whoever made the array behind a view may write into it, and numbers are no booleans.
+    view, turned = cells[:], np.asfortranarray(cells)
+    numbers = cells.astype(int)
+    for other in (view, turned, numbers):
+        other.flags.writeable = False
+        own = OccupancyGrid(other).occupied
+        assert own is not other and not np.shares_memory(own, other) and own.flags.c_contiguous
+        np.testing.assert_array_equal(own, cells)
 
 
 def test_unknown_cells_stay_with_the_grid_and_make_no_other_grid():

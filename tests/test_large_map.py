@@ -9,8 +9,10 @@ from pymoo.optimize import minimize
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.decision import TradeOffSet
+from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.fields import clearance, obstacle_potential
+from pymoo_gridpath.grid import Box
 from pymoo_gridpath.objectives import Objective, Vulnerability
 from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.paths import CellPaths
@@ -143,6 +145,9 @@ def test_what_is_worked_out_in_a_box_is_what_the_whole_has(corner_cutting):
     np.testing.assert_array_equal(clearance(large.crop(box))[reachable[box.slices]], clearance(large)[reachable])
     lengths = large.shortest_lengths(moved(START))
     assert np.isfinite(lengths[reachable]).all() and np.isinf(lengths[~reachable]).all()
+    assert large.shortest_length(moved(START), moved(GOAL)) == lengths[moved(GOAL)[::-1]]
+    assert large.shortest_length(moved(START), (10, 6)) == np.inf
+    assert large._lengths_in(box, moved(START)).shape == box.shape
     part = large.crop(box)
     np.testing.assert_allclose(part.to_metres((2, 3)), large.to_metres((2 + box.x0, 3 + box.y0)))
 
@@ -164,3 +169,14 @@ def test_grids_that_can_be_reached_are_worked_on_whole():
     assert open_grid.box_of((0, 0)) == open_grid.whole and open_grid.crop(open_grid.whole) is open_grid
     small, _ = pair()
     assert small.box_of(START) == small.whole
+
+
+@pytest.mark.parametrize("box", [(0, 0, 0, 5), (0, 0, 401, 5), (-1, 0, 3, 5), (0, 0, 3), (0, 0, 3, 2.5), "all"])
+def test_boxes_that_are_no_cells_of_the_grid_are_refused(box):
+    _, large = pair()
+    for use in (large.crop, lambda box: obstacle_potential(large, box=box), lambda box: Mud().field_in(large, box)):
+        with pytest.raises(GridPathError, match=r"box is .*, expected a Box of cells of the grid of 400 x 400"):
+            use(box)
+    with pytest.raises(GridError, match=r"start \(400, 0\) lies outside the grid"):
+        large.box_of((400, 0))
+    assert large.crop(Box(0, 0, 3, 5)).shape == (5, 3)

@@ -24,10 +24,21 @@ import map_mutations
 import numpy as np
 from harness import main
 
-from pymoo_gridpath import maps
 from pymoo_gridpath.errors import MapError, visible
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps import _declared, _files, array, format_of, image, load_map, movingai, read_scen, read_text_header, ros, text
+from pymoo_gridpath.maps import (
+    _declared,
+    _files,
+    array,
+    format_of,
+    image,
+    load_map,
+    movingai,
+    read_scen,
+    read_text_header,
+    ros,
+    text,
+)
 
 _FOLDER = Path(tempfile.mkdtemp(prefix="fuzzed-maps-"))
 atexit.register(shutil.rmtree, _FOLDER, ignore_errors=True)

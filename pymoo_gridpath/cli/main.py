@@ -326,7 +326,7 @@ def _load(name: str, arguments) -> tuple[OccupancyGrid, ShippedMap | TextHeader 
     """Return the grid of a file or of a shipped map, and the query that it names, if it does."""
     options = {key: getattr(arguments, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")}
     grid = load_map(name, **{key: value for key, value in options.items() if value is not None})
-    if not Path(name).is_file():
+    if not os.path.isfile(name):
         return grid, next((item for item in shipped_maps() if item.name == name), None)
     return grid, read_text_header(name) if map_format(name) == "a plain text map" else None
 
@@ -335,8 +335,8 @@ def _unknown(grid: OccupancyGrid) -> str | None:
     """Return in words how many cells of a map as read are unknown and what they count as; None if its kind knows none."""
     if grid.unknown is None:
         return None
-    n = int(grid.unknown.sum())
-    meaning = ("occupied" if grid.occupied[grid.unknown].all() else "free") if n else ""
+    n = int(np.count_nonzero(grid.unknown))
+    meaning = ("occupied" if (grid.occupied | ~grid.unknown).all() else "free") if n else ""
     return counted(n, "cell") + (f", {n / grid.unknown.size:.1%}, taken as {meaning}" if n else "")
 
 

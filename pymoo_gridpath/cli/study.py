@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import math
+import os
 from pathlib import Path
 
 from pymoo_gridpath.cli.arguments import folder, positive
@@ -96,7 +97,7 @@ def _check(arguments) -> int:
     print(f"runs: {len(plan.runs):,}{measured}", flush=True)
     due = plan.runs
     folder = _results(arguments)
-    if folder.is_dir():
+    if os.path.isdir(folder):
         found = Store(folder).check([run.key for run in plan.runs])
         missing = set(found.missing)
         due = tuple(run for run in plan.runs if run.key in missing)

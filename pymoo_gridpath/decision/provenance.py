@@ -19,7 +19,7 @@ def describe_source(grid: OccupancyGrid) -> dict:
     """Return what tells a map as it was read from others; ``unknown_cells`` is None where its format knows none."""
     return {
         "occupied_cells": grid.n_occupied,
-        "unknown_cells": None if grid.unknown is None else int(grid.unknown.sum()),
+        "unknown_cells": None if grid.unknown is None else int(np.count_nonzero(grid.unknown)),
         "sha256": grid.digest,
     }
 

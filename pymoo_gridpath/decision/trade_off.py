@@ -301,8 +301,7 @@ class TradeOffSet:
         """Length in cells of the shortest of all legal paths on the grid in any coding; None if length is no objective."""
         if "length" not in self.objective_names:
             return None
-        x, y = self.problem.goal
-        return float(self.problem.grid.shortest_lengths(self.problem.start)[y, x])
+        return self.problem.grid.shortest_length(self.problem.start, self.problem.goal)
 
     @property
     def advice(self) -> str:

@@ -156,7 +156,7 @@ def yaml_of_image(image: str | os.PathLike[str]) -> Path | None:
         return None
     for name in names:
         beside = image.parent / name
-        if beside.suffix.lower() in (".yaml", ".yml") and beside.is_file() and _names(beside, image):
+        if beside.suffix.lower() in (".yaml", ".yml") and os.path.isfile(beside) and _names(beside, image):
             return beside
     return None
 
@@ -168,6 +168,6 @@ def _names(path: Path, image: Path) -> bool:
             return False
         keys = Keys(path)
         named = path.parent / keys.text("image", "a name") if "image" in keys else None
-        return named is not None and named.is_file() and named.samefile(image)
+        return named is not None and os.path.isfile(named) and named.samefile(image)
     except (MapError, OSError, ValueError):
         return False

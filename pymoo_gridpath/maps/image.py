@@ -89,6 +89,8 @@ class Pixels:
 
     def grey(self) -> np.ndarray:
         """Return the luminance of each pixel by Rec. 601, uint8, rounded as GraphicsMagick with 16 bits a value does."""
+        if self.channels.dtype == np.uint8 and self.channels.ndim == 2:
+            return self.channels
         to_16_bits = _WHITE_16 // self.white
         height, width = self.channels.shape[:2]
         grey = np.empty((height, width), np.uint8)

@@ -84,19 +84,15 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
     settings = _read_settings(path)
     pixels = read_pixels(settings.image, turn=False)
     grey = pixels.grey()
-    percent = _occupancy(pixels, grey, settings)
-    unseen = percent == UNKNOWN
-    occupied = percent >= OCCUPIED_PERCENT
-    if unknown == "occupied":
-        occupied |= unseen
+    occupied, unseen = _cells(pixels, grey, settings, unknown == "occupied")
     _warn_if_unknown_is_free(path, grey, settings)
     return make_grid(
         path,
-        occupied[::-1],
+        occupied,
         resolution=settings.resolution,
         origin=settings.origin,
         corner_cutting=corner_cutting,
-        unknown=unseen[::-1],
+        unknown=unseen,
     )
 
 
@@ -123,15 +119,19 @@ class _Settings:
     mode: str
 
 
-def _occupancy(pixels: Pixels, grey: np.ndarray, settings: _Settings) -> np.ndarray:
-    """Return the occupancy of every pixel as the map server publishes it: 0 to 100, or -1 where unknown."""
+def _cells(pixels: Pixels, grey: np.ndarray, settings: _Settings, fill: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return which cells are occupied and which unknown, the bottom row first, read-only; ``fill`` occupies the unknown."""
     levels = _levels(settings)
-    percent = np.empty(grey.shape, levels.dtype)
-    for rows in blocks(len(grey), grey.shape[1]):
-        percent[rows] = levels[grey[rows]]
-    if pixels.alpha is not None and settings.mode != "raw":
-        percent[pixels.alpha < pixels.opaque] = UNKNOWN
-    return percent
+    occupied, unseen = np.empty(grey.shape, dtype=bool), np.empty(grey.shape, dtype=bool)
+    for rows in blocks(*grey.shape):
+        percent = levels[grey[rows]]
+        if pixels.alpha is not None and settings.mode != "raw":
+            percent[pixels.alpha[rows] < pixels.opaque] = UNKNOWN
+        unknown = percent == UNKNOWN
+        unseen[::-1][rows] = unknown
+        occupied[::-1][rows] = (percent >= OCCUPIED_PERCENT) | (unknown & fill)
+    occupied.flags.writeable = unseen.flags.writeable = False
+    return occupied, unseen
 
 
 def _levels(settings: _Settings) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from pymoo_gridpath.memory import needed
 from pymoo_gridpath.study.planning.canonical import n_cells, resolve
+from pymoo_gridpath.study.planning.stored import check_plan
 
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
 SCHEMA = 2
@@ -158,7 +159,14 @@ class Plan:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Plan:
-        """Return the plan that `to_json` wrote, without grids."""
+        """Return the plan that `to_json` wrote, without grids.
+
+        Raises
+        ------
+        StudyError
+            If it is no such plan: something is missing, of another type, or does not belong together.
+        """
+        check_plan(data)
         return cls(
             **{
                 **data,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from pymoo_gridpath.checks import printable
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps import Query, load_map, query_of, read_scen
@@ -91,8 +92,8 @@ def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[Occupan
     """Return the grid of a problem as it was read, and its queries with what tells them apart."""
     scen = None if spec.scen is None else study.folder / spec.scen
     known = Query()
-    if scen is not None and not scen.is_file():
-        raise study.error(f"{scen}: no such file, expected a .scen file of queries", (*place_of(k), "scen"))
+    if scen is not None and not os.path.isfile(scen):
+        raise study.error(f"{printable(scen)}: no such file, expected a .scen file of queries", (*place_of(k), "scen"))
     if spec.grid is not None:
         grid = spec.grid
     else:
@@ -115,7 +116,7 @@ def _map_path(study: Study, spec: ProblemSpec) -> str:
     """Return the path of a map, or the name of a shipped one; a file beside the study goes first, as in `load_map`."""
     name = spec.map if spec.map is not None else str(spec.scen).removesuffix(".scen")
     beside = study.folder / name
-    shipped = not beside.exists() and Path(name).name == name and not Path(name).suffix
+    shipped = not os.path.exists(beside) and Path(name).name == name and not Path(name).suffix
     return name if shipped else os.fspath(beside)
 
 

@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.quality import ReferenceFront, first_reaching, merge_fronts
 from pymoo_gridpath.study.planning.canonical import resolve
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, is_exact
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
-from pymoo_gridpath.study.running.store import Store
+from pymoo_gridpath.study.running.store import Store, readable
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,6 +216,7 @@ def collect(store: Store, target: float | None = None) -> Results:
         wanted = plan.problems[problem].reference
         if wanted is not None and wanted not in records:
             records[wanted] = _read(store, wanted)
+        _check_objectives(plan, problem, records)
         reference = _reference(plan, problem, records)
         results.references.append(reference)
         for run in runs:
@@ -232,13 +234,25 @@ def collect(store: Store, target: float | None = None) -> Results:
 
 def _read(store: Store, key: str) -> tuple[RunRecord | None, str]:
     """Return a record, if there is one, without its genes, and its status."""
-    if not store.path(key).exists():
-        return None, "missing"
+    with readable(store.folder):
+        if not store.path(key).exists():
+            return None, "missing"
     try:
         record = store.read(key, genes=False)
     except DamagedRecordError:
         return None, "damaged"
     return record, record.status
+
+
+def _check_objectives(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | None, str]]) -> None:
+    """Refuse a plan that somebody changed, so that its runs are of other problems."""
+    planned = plan.problems[problem]
+    for key, (record, _) in records.items():
+        if record is not None and record.objectives != planned.spec["objectives"]:
+            raise GridPathError(
+                f"the run {key} has the objectives {', '.join(record.objectives)}, expected those of the problem "
+                f"{checks.shown(planned.label)} in plan.json; `study run` writes it anew"
+            )
 
 
 def _count_origins(results: Results, records: list[RunRecord]) -> None:

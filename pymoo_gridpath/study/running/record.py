@@ -64,8 +64,19 @@ class History:
         return len(self.evaluations)
 
     def front(self, k: int) -> np.ndarray:
-        """Return the legal non-dominated points of record k, shape (n, n_obj), sorted by the objectives from the first on."""
-        k = range(len(self))[checks.whole("k", k, -len(self), len(self) - 1)]
+        """Return the legal non-dominated points of record k, shape (n, n_obj), sorted by the objectives from the first on.
+
+        Parameters
+        ----------
+        k : int
+            Counted from 0; from the last record backwards if it is negative.
+
+        Raises
+        ------
+        GridPathError
+            If there is no such record.
+        """
+        k = checks.whole("k", k, -len(self), len(self) - 1) % len(self)
         points = self.points[(self.first <= k) & (k <= self.last)]
         return points[np.lexsort(points.T[::-1])]
 

@@ -120,11 +120,19 @@ class Store:
         keys : iterable of str
         set_aside : bool, default False
             Whether damaged files, and what else stands in the way, are moved to ``damaged/``.
+
+        Raises
+        ------
+        GridPathError
+            If a folder or a file cannot be read, or what is damaged cannot be moved.
         """
         found = StoredRuns()
-        for path in list(self._odd()):
+        with readable(self.folder):
+            odd = list(self._odd())
+        for path in odd:
             found.odd.append(self._set_aside(path) if set_aside else path)
-        present = self._present()
+        with readable(self.folder):
+            present = self._present()
         for key in checks.names("keys", keys):
             if key not in present:
                 found.missing.append(key)
@@ -171,16 +179,18 @@ class Store:
             If there is none, or it cannot be read.
         """
         path = self.folder / "plan.json"
+        with readable(path):
+            try:
+                data = path.read_bytes()
+            except FileNotFoundError:
+                raise GridPathError(f"{self.folder} has no plan.json, expected the folder of a study that was run") from None
         try:
-            return Plan.from_json(json.loads(path.read_bytes()))
-        except FileNotFoundError:
-            raise GridPathError(f"{self.folder} has no plan.json, expected the folder of a study that was run") from None
-        except OSError as error:
-            raise GridPathError(f"{path} cannot be read: {error.strerror}") from None
-        except (ValueError, KeyError, TypeError) as error:
-            raise GridPathError(
-                f"{path} is not a plan that this version can read ({error}); `study run` writes it anew"
-            ) from None
+            return Plan.from_json(json.loads(data))
+        except RecursionError:
+            why = "it is nested too deeply"
+        except ValueError as error:  # of JSON, or a StudyError
+            why = error
+        raise GridPathError(f"{path} is not a plan that this version can read ({why}); `study run` writes it anew")
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[bool]:
@@ -236,14 +246,13 @@ class Store:
 
     def _read(self, key: str) -> bytes:
         path = self.path(key)
-        if os.path.lexists(path) and not path.is_file():
+        if os.path.lexists(path) and not os.path.isfile(path):
             raise DamagedRecordError(f"{path} is a folder, or a link that leads nowhere, expected the file of a run")
-        try:
-            return path.read_bytes()
-        except FileNotFoundError:
-            raise GridPathError(f"{self.folder} has no run {key}, expected one that was stored") from None
-        except OSError as error:
-            raise GridPathError(f"{path} cannot be read: {error.strerror}") from None
+        with readable(path):
+            try:
+                return path.read_bytes()
+            except FileNotFoundError:
+                raise GridPathError(f"{self.folder} has no run {key}, expected one that was stored") from None
 
     def _write(self, path: Path, data: bytes) -> None:
         try:
@@ -272,6 +281,15 @@ class Store:
             for entry in os.scandir(folder):
                 if _is_unfinished(entry) and not entry.is_dir():
                     os.unlink(entry.path)
+
+
+@contextlib.contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Make a sentence of what keeps a file, or something in a folder, from being read."""
+    try:
+        yield
+    except OSError as error:
+        raise GridPathError(f"{error.filename or path} cannot be read: {error.strerror}") from None
 
 
 def _is_unfinished(entry: os.DirEntry) -> bool:

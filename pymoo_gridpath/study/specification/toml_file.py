@@ -16,7 +16,8 @@ from pymoo_gridpath.study.specification.study import Study
 # Of a study of a thousand problems, a tenth.
 _MOST_BYTES = 2_000_000
 # tomllib takes time that grows with the square of the number of parts of a key.
-_MANY_PARTS = re.compile(r"""(?<![\w."'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){50}""")
+_PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
+_MANY_PARTS = re.compile(rf"""(?<![\\\w."'-])(?:{_PART}[ \t]*+\.[ \t]*+){{50}}""")
 
 #: What a new study file is called.
 STARTER_NAME = "study.toml"
@@ -44,7 +45,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     source = Source(path, _read(path))
     if many := _MANY_PARTS.search(source.text):
         line = source.text.count("\n", 0, many.start()) + 1
-        raise StudyError("a key has 50 parts or more, expected a study", path=source.path, line=line)
+        raise StudyError("a key has more than 50 parts, expected a study", path=source.path, line=line)
     try:
         data = tomllib.loads(source.text)
     except tomllib.TOMLDecodeError as error:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import io
 import json
+import struct
 import zipfile
 
 import numpy as np
@@ -94,6 +96,35 @@ def test_every_missing_end_is_noticed():
             from_bytes(damaged)
 
 
+def seal(data: bytes) -> bytes:
+    return data + b"sha256 " + hashlib.sha256(data).hexdigest().encode()
+
+
+def archive(**members) -> bytes:
+    """Return a zip archive that begins with the description of a run."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as made:
+        made.writestr("meta.json", zipfile.ZipFile(io.BytesIO(to_bytes(record()))).read("meta.json"))
+        for name, data in members.items():
+            made.writestr(f"{name}.npy", data)
+    return file.getvalue()
+
+
+def test_what_is_no_run_is_damaged_although_its_checksum_is_right():
+    whole = to_bytes(record())[:-71]
+    assert from_bytes(seal(whole[:-2] + struct.pack("<H", 71))).key == record().key
+    headless = [b"", b"PK", bytes(30) + b"{}", bytes(26) + b"\2\0\0\0{}", b"x" * 100]
+    # The description stands first, and what follows is no archive, or one without the arrays.
+    armless = [whole[: whole.index(b"PK", 4)], archive(), archive(X=b"", F=b"", turn=b""), archive(F=b"\x93NUMPY\1\0")]
+    for data in headless:
+        with pytest.raises(DamagedRecordError, match="the run "):
+            read_meta(seal(data))
+    for data in [*headless, *armless]:
+        for genes in (True, False):
+            with pytest.raises(DamagedRecordError, match="the run "):
+                from_bytes(seal(data), genes)
+
+
 def test_a_later_format_is_refused(monkeypatch):
     monkeypatch.setattr("pymoo_gridpath.study.running.record.FORMAT", 2)
     data = to_bytes(record())
@@ -107,8 +138,9 @@ def test_front_of_a_record():
     run = history()
     assert [run.front(k).tolist() for k in range(3)] == [[], [[2, 2], [3, 1]], [[2, 1.5], [3, 1]]]
     assert run.front(-1).tolist() == run.front(2).tolist()
-    with pytest.raises(IndexError):
-        run.front(3)
+    for k in (3, -4, 1.0, True, "1"):
+        with pytest.raises(GridPathError, match=rf"k is {k!r}, expected a whole number of at least -3 and at most 2"):
+            run.front(k)
 
 
 def test_a_run_of_a_few_dozen_points_takes_a_few_kilobytes():

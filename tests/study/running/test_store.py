@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import functools
+import json
 import os
 import subprocess
 import sys
@@ -78,6 +81,107 @@ def test_the_plan_comes_back_without_grids(tmp_path, plan):
     (tmp_path / "plan.json").write_text("{}")
     with pytest.raises(GridPathError, match=r"plan.json is not a plan that this version can read"):
         store.read_plan()
+
+
+def altered(plan, place, value) -> dict:
+    """Return a plan as its file holds it, with something else at a place, or without that if it is `DROPPED`."""
+    data = json.loads(json.dumps(plan.to_json()))
+    *way, last = place
+    inner = functools.reduce(lambda inner, key: inner[key], way, data)
+    if value is DROPPED:
+        del inner[last]
+    else:
+        inner[last] = value
+    return data
+
+
+DROPPED = object()
+SPEC = ("problems", 0, "spec")
+GRID = (*SPEC, "grid", "random")
+ALGORITHM = ("algorithms", 1, "spec")
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "message"),
+    [
+        (("name",), 3, "name: name is 3, expected a text"),
+        (("name",), DROPPED, "the plan has no name"),
+        (("more",), 1, "the plan has no key 'more'"),
+        (("budget",), {"generations": "9"}, "budget.generations: generations is '9', expected a whole number"),
+        (("target",), 1.5, "target: target is 1.5, expected a number, above 0, at most 1"),
+        (("reference",), {"algorithm": "NSGA2"}, "reference.algorithm: algorithm is 'NSGA2', expected exact"),
+        (("reference",), {"algorithm": "exact", "max_seconds": "x"}, "max_seconds is 'x', expected a number"),
+        (("problems",), {}, "problems: problems is {}, expected a list"),
+        (("problems", 0), 5, "problems[0]: problems is 5, expected a table"),
+        (("problems", 0, "label"), [1], "problems[0].label: label is [1], expected a text"),
+        (("problems", 0, "reference"), "../x", "reference is '../x', expected the key of a run"),
+        (SPEC, [], "spec is [], expected a table"),
+        ((*SPEC, "axis"), DROPPED, "the problem has no axis"),
+        ((*SPEC, "goal"), 5, "problems[0].spec.goal: goal is 5, expected a cell"),
+        ((*SPEC, "goal"), [900, 0], "goal is [900, 0], expected a cell of"),
+        ((*SPEC, "objectives"), ["length", "size"], "there is no objective 'size'"),
+        ((*SPEC, "objectives"), "length", "objectives is 'length', expected a list"),
+        ((*SPEC, "representation"), "cell", "representation is 'cell'"),
+        ((*SPEC, "representation"), None, "representation is None, expected what the problem is solved with"),
+        ((*SPEC, "penalty"), None, "penalty is None, expected what the problem is solved with"),
+        ((*SPEC, "penalty"), "2", "penalty is '2', expected a number"),
+        ((*SPEC, "obstacles"), "limit", "needs potential_limit"),
+        ((*SPEC, "grid"), {"width": 3}, "the grid has no digest"),
+        ((*GRID, "size"), 1e9, "size is 1000000000.0, expected a whole number"),
+        ((*GRID, "seed"), -1, "seed is -1, expected a whole number"),
+        ((*ALGORITHM, "algorithm"), "nsga2", "algorithm is 'nsga2', expected its full name, NSGA2"),
+        ((*ALGORITHM, "algorithm"), ["NSGA2"], "algorithm is ['NSGA2'], expected a text"),
+        ((*ALGORITHM, "operators"), "paper", "operators is 'paper', expected a table"),
+        ((*ALGORITHM, "operators"), {"base": "paper", "sampling": "x"}, "sampling is 'x', expected a table"),
+        ((*ALGORITHM, "pop_size"), None, "pop_size is None, expected a whole number"),
+        ((*ALGORITHM, "parameters"), None, "parameters is None, expected a table"),
+        ((*ALGORITHM, "parameters"), {"rate": 1}, "takes no parameter 'rate'"),
+        (("algorithms", 0, "overrides"), {"start": [0, 0]}, "overrides has no key 'start'"),
+        (("algorithms", 0, "overrides"), {"obstacles": "limit"}, "needs potential_limit beside it"),
+        (("algorithms", 0, "overrides"), {"axis": None}, "axis is none"),
+        (("runs",), 3, "runs: runs is 3, expected a list"),
+        (("runs", 0), ["a", 0, 0], "a run is ['a', 0, 0], expected its key, problem, algorithm and seed"),
+        (("runs", 0, 0), "../a", "expected its key, problem, algorithm and seed"),
+        (("runs", 0, 1), 99, "problem is 99, expected a whole number, 0 to"),
+        (("runs", 0, 2), "0", "algorithm is '0', expected a whole number"),
+        (("runs", 0, 3), 1.5, "seed is 1.5, expected a whole number"),
+    ],
+)
+def test_a_plan_that_somebody_changed_is_refused_in_words(tmp_path, plan, place, value, message):
+    (tmp_path / "plan.json").write_text(json.dumps(altered(plan, place, value)))
+    with pytest.raises(GridPathError) as error:
+        Store(tmp_path).read_plan()
+    assert message in str(error.value) and str(error.value).endswith("`study run` writes it anew")
+
+
+def test_plans_that_do_not_hang_together_are_refused(tmp_path, plan):
+    data = plan.to_json()
+    twice = {**data, "runs": [*data["runs"], data["runs"][0]]}
+    without = {**data, "reference": None, "runs": [[*data["runs"][0][:2], None, 0]]}
+    mixed = json.loads(json.dumps(data))
+    mixed["problems"].append({**mixed["problems"][0], "label": "other", "spec": {**mixed["problems"][0]["spec"], "axis": "x"}})
+    for changed, message in [(twice, "stands twice"), (without, "the plan no reference"), (mixed, "the others of its group")]:
+        (tmp_path / "plan.json").write_text(json.dumps(changed))
+        with pytest.raises(GridPathError, match=message):
+            Store(tmp_path).read_plan()
+    (tmp_path / "plan.json").write_text("[" * 100_000)
+    with pytest.raises(GridPathError, match="nested too deeply"):
+        Store(tmp_path).read_plan()
+
+
+def test_folders_that_cannot_be_listed_are_named(store, monkeypatch):
+    def scandir(path):
+        raise PermissionError(errno.EACCES, "Permission denied", os.fspath(path))
+
+    monkeypatch.setattr(os, "scandir", scandir)
+    with pytest.raises(GridPathError, match=f"{store.folder.name}.* cannot be read: Permission denied"):
+        store.check(KEYS)
+    # The folders of the runs alone, once what is odd has been looked for.
+    monkeypatch.setattr(Store, "_odd", lambda self: iter(()))
+    with pytest.raises(GridPathError, match=r"runs.0\d cannot be read: Permission denied"):
+        store.check(KEYS)
+    with pytest.raises(GridPathError, match=f"{store.folder.name}.* cannot be .*: Permission denied"), store.lock():
+        pass
 
 
 def test_the_lock_is_for_one(store):

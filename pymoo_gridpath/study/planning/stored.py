@@ -1,0 +1,203 @@
+"""A plan as a file holds it, checked: whoever reads one finds in it what a study plans, or a sentence says what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.study.planning import canonical
+from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
+from pymoo_gridpath.study.specification.base import make_spec
+from pymoo_gridpath.study.specification.problem import ProblemSpec, RandomFamily
+from pymoo_gridpath.study.specification.study import Study
+from pymoo_gridpath.study.specification.values import Where
+
+_PLAN = ("name", "budget", "target", "problems", "algorithms", "runs")
+_SETTINGS = ("objectives", "representation", "obstacles", "penalty", "potential_limit", "axis")
+_OVERRIDES = ("representation", "obstacles", "penalty", "potential_limit", "axis")
+
+# Longer keys are none, see `Store.path`; a million runs are checked by this.
+_LONGEST_KEY = 200
+
+
+def check_plan(data: Any) -> None:
+    """Raise StudyError unless it is what `Plan.to_json` returns."""
+    plan = _table(data, _PLAN, (), "the plan", ("reference",))
+    algorithms = [
+        _check_algorithm(_table(item, ("label", "spec", "overrides"), ("algorithms", k), "an algorithm"), ("algorithms", k))
+        for k, item in enumerate(_list(plan["algorithms"], ("algorithms",)))
+    ]
+    problems = [
+        _table(item, ("label", "group", "spec"), ("problems", k), "a problem", ("reference", "source"))
+        for k, item in enumerate(_list(plan["problems"], ("problems",)))
+    ]
+    for k, problem in enumerate(problems):
+        _check_problem(problem, ("problems", k))
+    _check_groups(problems)
+    _check_limits(problems, algorithms)
+    reference = plan.get("reference")
+    if reference is not None:
+        reference = _exact(reference, ("reference",))
+    # What stands in a study as in its plan, so that the study checks it.
+    Study(
+        problems=[ProblemSpec(map="checked")],
+        algorithms=[AlgorithmSpec(algorithm="exact")],
+        seeds=1,
+        name=plan["name"],
+        budget=plan["budget"],
+        target=plan["target"],
+        reference=False if reference is None else {key: value for key, value in reference.items() if key != "algorithm"},
+    )
+    _check_runs(_list(plan["runs"], ("runs",)), len(problems), len(algorithms), reference is not None)
+
+
+# -- parts --------------------------------------------------------------------------------------------------------------
+
+
+def _table(value: Any, keys: tuple[str, ...], where: Where, owner: str, optional: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return a table that has these keys, perhaps the optional ones, and no others."""
+    table = values.table(value, where)
+    values.check_keys(table, (*keys, *optional), where, owner)
+    for key in keys:
+        if key not in table:
+            raise StudyError(f"{owner} has no {key}, expected {', '.join(keys)}", where)
+    return table
+
+
+def _list(value: Any, where: Where) -> list:
+    if not isinstance(value, list):
+        raise StudyError(f"{values.key_of(where)} is {values.show(value)}, expected a list", where)
+    return value
+
+
+def _check_texts(table: Mapping[str, Any], keys: tuple[str, ...], where: Where) -> None:
+    for key in keys:
+        if not isinstance(table[key], str):
+            raise StudyError(f"{key} is {values.show(table[key])}, expected a text", (*where, key))
+
+
+def _is_key(value: Any) -> bool:
+    return isinstance(value, str) and 0 < len(value) <= _LONGEST_KEY and value.isalnum()
+
+
+def _check_problem(problem: Mapping[str, Any], where: Where) -> None:
+    _check_texts({"source": "", **problem}, ("label", "group", "source"), where)
+    reference = problem.get("reference")
+    if reference is not None and not _is_key(reference):
+        raise StudyError(f"reference is {values.show(reference)}, expected the key of a run, or none", (*where, "reference"))
+    place = (*where, "spec")
+    spec = _table(problem["spec"], ("grid", "start", "goal", *_SETTINGS), place, "the problem")
+    width, height = _check_grid(spec["grid"], (*place, "grid"))
+    for role in ("start", "goal"):
+        x, y = values.cell(spec[role], (*place, role))
+        if not (0 <= x < width and 0 <= y < height):
+            raise StudyError(f"{role} is {values.show(spec[role])}, expected a cell of {width} x {height}", (*place, role))
+    settings = {key: spec[key] for key in _SETTINGS}
+    made = _at(place, make_spec, ProblemSpec, {"map": "checked", **settings}, ())
+    if not isinstance(spec["objectives"], list) or list(made.objectives) != spec["objectives"]:
+        raise StudyError(f"objectives is {values.show(spec['objectives'])}, expected a list of names", (*place, "objectives"))
+    if spec["representation"] is None or (spec["penalty"] is None) != (spec["obstacles"] == "constraint"):
+        key = "representation" if spec["representation"] is None else "penalty"
+        raise StudyError(f"{key} is {values.show(spec[key])}, expected what the problem is solved with", (*place, key))
+
+
+def _at(place: Where, function, *arguments) -> Any:
+    """Return what a function returns, with a place before that in its errors."""
+    try:
+        return function(*arguments)
+    except StudyError as error:
+        raise StudyError(error.message, (*place, *error.where)) from None
+
+
+def _check_grid(value: Any, where: Where) -> tuple[int, int]:
+    """Return the width and the height of a grid."""
+    if isinstance(value, Mapping) and "random" in value:
+        place = (*where, "random")
+        grid = _table(value, ("random",), where, "the grid")
+        family = _table(grid["random"], ("size", "p0", "seed", "corner_cutting"), place, "the random grid")
+        values.whole(family["seed"], (*place, "seed"), 0, values.MAX_SEED)
+        _at(place, make_spec, RandomFamily, {key: family[key] for key in ("size", "p0", "corner_cutting")}, ())
+        return family["size"], family["size"]
+    grid = _table(value, ("digest", "width", "height", "corner_cutting"), where, "the grid")
+    _check_texts(grid, ("digest",), where)
+    values.flag(grid["corner_cutting"], (*where, "corner_cutting"))
+    return values.whole(grid["width"], (*where, "width"), 1), values.whole(grid["height"], (*where, "height"), 1)
+
+
+def _exact(value: Any, where: Where) -> dict[str, Any]:
+    """Return the table of an exact front."""
+    table = _table(value, ("algorithm",), where, "the exact front", ("max_seconds", "max_labels"))
+    if table["algorithm"] != "exact":
+        raise StudyError(f"algorithm is {values.show(table['algorithm'])}, expected exact", (*where, "algorithm"))
+    return table
+
+
+def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str, Any]:
+    _check_texts(algorithm, ("label",), where)
+    place = (*where, "spec")
+    spec = values.table(algorithm["spec"], place)
+    if "preset" in spec:
+        spec = _table(spec, ("preset", "pop_size"), place, "the preset")
+    elif spec.get("algorithm") == "exact":
+        spec = _exact(spec, place)
+    else:
+        keys = ("algorithm", "pop_size", "smoothness", "operators", "parameters")
+        spec = _table(spec, keys, place, "the algorithm")
+        operators = _table(spec["operators"], ("base",), (*place, "operators"), "operators", tuple(canonical.SLOTS))
+        for slot, single in operators.items():
+            if slot != "base":
+                values.table(single, (*place, "operators", slot))
+        values.table(spec["parameters"], (*place, "parameters"))
+        values.whole(spec["pop_size"], (*place, "pop_size"), 2, values.MAX_POP_SIZE)
+    overrides = _table(algorithm["overrides"], (), (*where, "overrides"), "overrides", _OVERRIDES)
+    for key, value in overrides.items():
+        if value is None:
+            raise StudyError(f"{key} is none, expected a change to the problem", (*where, "overrides", key))
+    made = _at(place, make_spec, AlgorithmSpec, {**spec, **overrides}, ())
+    if "algorithm" in spec and spec["algorithm"] != made.algorithm:
+        shown = values.show(spec["algorithm"])
+        raise StudyError(f"algorithm is {shown}, expected its full name, {made.algorithm}", (*place, "algorithm"))
+    return algorithm
+
+
+def _check_groups(problems: list[dict[str, Any]]) -> None:
+    """Refuse problems of one group that differ in more than their grid and query."""
+    firsts: dict[str, Mapping[str, Any]] = {}
+    for k, problem in enumerate(problems):
+        spec = problem["spec"]
+        first = firsts.setdefault(problem["group"], spec)
+        for key in _SETTINGS:
+            # Where obstacles are limited, the default penalty depends on the grid.
+            if first[key] != spec[key] and key != "penalty":
+                shown = values.show(spec[key])
+                raise StudyError(f"{key} is {shown}, expected that of the others of its group", ("problems", k, "spec", key))
+        if ("random" in first["grid"]) != ("random" in spec["grid"]):
+            raise StudyError("grid is of another kind than those of its group", ("problems", k, "spec", "grid"))
+
+
+def _check_limits(problems: list[dict[str, Any]], algorithms: list[Mapping[str, Any]]) -> None:
+    """Refuse algorithms that limit the vulnerability in problems without saying to how much."""
+    given = all(problem["spec"]["obstacles"] == "limit" for problem in problems)
+    for k, algorithm in enumerate(algorithms):
+        overrides = algorithm["overrides"]
+        if overrides.get("obstacles") == "limit" and "potential_limit" not in overrides and not given:
+            raise StudyError("obstacles 'limit' needs potential_limit beside it", ("algorithms", k, "overrides", "obstacles"))
+
+
+def _check_runs(runs: list, n_problems: int, n_algorithms: int, has_reference: bool) -> None:
+    seen: set[str] = set()
+    for k, run in enumerate(runs):
+        if not isinstance(run, list) or len(run) != 4 or not _is_key(run[0]):
+            raise StudyError(f"a run is {values.show(run)}, expected its key, problem, algorithm and seed", ("runs", k))
+        key, problem, algorithm, seed = run
+        if key in seen:
+            raise StudyError(f"the run {key} stands twice, expected each once", ("runs", k))
+        seen.add(key)
+        values.whole(problem, ("runs", k, "problem"), 0, n_problems - 1)
+        values.whole(seed, ("runs", k, "seed"), 0, values.MAX_SEED)
+        if algorithm is not None:
+            values.whole(algorithm, ("runs", k, "algorithm"), 0, n_algorithms - 1)
+        elif not has_reference:
+            raise StudyError("a run has no algorithm, and the plan no reference", ("runs", k, "algorithm"))
