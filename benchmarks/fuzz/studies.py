@@ -501,7 +501,7 @@ def _hoard(function):
     return large
 
 
-def _no_bytes(path) -> str:
+def _without_limit(path) -> str:
     return Path(path).read_bytes().decode("utf-8")
 
 
@@ -532,7 +532,7 @@ def _delete(self, path: Path) -> Path:
 
 PLANTED = {
     "a budget is not checked": lambda: changed(study, "_budget", dict),
-    "bytes that are no text escape": lambda: changed(toml_file, "_read", _no_bytes),
+    "files of any size are read": lambda: changed(toml_file, "_read", _without_limit),
     "values are shown whole and raw": lambda: changed(values, "show", str),
     "an unknown key takes seconds": lambda: changed(StudyError, "__init__", _burn(StudyError.__init__)),
     "a plan takes memory": lambda: changed(sys.modules[__name__], "plan_study", _hoard(plan_study)),
