@@ -64,7 +64,8 @@ class TestRos(MapFormatSuite):
     def write(self, path, grid):
         shades_of(grid).save(path.with_suffix(".pgm"))
         path.write_text(
-            f"image: {path.stem}.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+            f"image: {path.stem}.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\n"
+            "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
         )
 
 
@@ -214,9 +215,7 @@ FAULTS = {
     "all files are its own": {"matches": lambda self, head, path: True},
     "told by another name than its own": {"matches": lambda self, head, path: head[:4] == b"runs" and path.suffix == ".runs"},
     "none of its own files": {"suffixes": (".txt",), "matches": lambda self, head, path: False},
-    "start and goal swapped": {
-        "query": lambda self, path: (q := Runs.query(self, path)) and Query(q.goal, q.start, q.radius)
-    },
+    "start and goal swapped": {"query": lambda self, path: (q := Runs.query(self, path)) and Query(q.goal, q.start, q.radius)},
     "radius in other units": {
         "query": lambda self, path: (q := Runs.query(self, path)) and Query(q.start, q.goal, 100 * q.radius)
     },
@@ -252,7 +251,7 @@ def test_planted_faults_are_caught(tmp_path, monkeypatch, fault):
 
 def test_a_format_of_ones_own_is_known_everywhere(tmp_path, capsys, monkeypatch):
     from pymoo_gridpath.cli import main
-    from pymoo_gridpath.study import Study
+    from pymoo_gridpath.study import Study, plan_study
 
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "room.runs"
@@ -265,6 +264,6 @@ def test_a_format_of_ones_own_is_known_everywhere(tmp_path, capsys, monkeypatch)
     assert main(["info", "room.runs", "--threshold", "0.5"]) == 2
     assert "'runs' does not take the option 'threshold', expected one of corner_cutting, resolution" in capsys.readouterr().err
     algorithms = [{"algorithm": "nsga2", "pop_size": 10}]
-    plan = Study(name="s", problems=[{"map": "room.runs"}], algorithms=algorithms, seeds=1, budget={"generations": 2}).plan()
-    (problem,) = plan.problems
+    study = Study(name="s", problems=[{"map": "room.runs"}], algorithms=algorithms, seeds=1, budget={"generations": 2})
+    (problem,) = plan_study(study).problems
     assert (problem.spec["start"], problem.spec["goal"]) == ([0, 0], [3, 1])
