@@ -46,8 +46,8 @@ def test_the_package_alone_costs_nothing():
     code = (
         "import sys, pymoo_gridpath\n"
         "loaded = {name.partition('.')[0] for name in sys.modules} & {'numpy', 'scipy', 'numba', 'pymoo', 'matplotlib'}\n"
-        "ours = {name for name in sys.modules if name.startswith('pymoo_gridpath')} - {'pymoo_gridpath', 'pymoo_gridpath.lazy'}\n"
-        "sys.exit(str(loaded | ours) if loaded | ours else 0)\n"
+        "ours = sorted(name for name in sys.modules if name.startswith('pymoo_gridpath'))\n"
+        "sys.exit(str(loaded) if loaded or ours != ['pymoo_gridpath', 'pymoo_gridpath.lazy'] else 0)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 
@@ -159,5 +159,5 @@ def test_a_name_does_not_go_too_early(since, remove_in):
 
 @pytest.mark.parametrize("release", ["0.2", "next", "0.2.0rc1", ""])
 def test_a_release_has_three_numbers(release):
-    with pytest.raises(GridPathError, match="is not a release, expected one such as '0.2.0'"):
+    with pytest.raises(GridPathError, match=r"is not a release, expected one such as '0\.2\.0'"):
         deprecated(release, "1.0.0", instead="x")
