@@ -59,7 +59,9 @@ html_static_path = ["_static"]
 html_css_files = ["custom.css"]
 html_show_sourcelink = False
 html_copy_source = False
-html_sidebars = {page: [] for page in ("index", "tutorial", "method", "algorithms", "exact", "maps")}
+html_sidebars = {
+    page: [] for page in ("index", "tutorial", "method", "algorithms", "exact", "maps", "command_line", "internals")
+}
 html_theme_options = {
     "logo": {"text": "pymoo_gridpath"},
     "show_toc_level": 2,

@@ -176,7 +176,7 @@ class OccupancyGrid:
     def digest(self) -> str:
         """SHA-256, in hexadecimal, of the size and of which cells are occupied; the one by which files and runs know a grid.
 
-        Of the text ``"{width} {height} "`` and the cells, row by row from the bottom, eight a byte, the first in the highest bit.
+        Of the text ``"{width} {height} "`` and the cells, row by row from the bottom, eight a byte, the first highest.
         """
         cells = np.packbits(self._occupied).data
         return hashlib.sha256(b"".join((f"{self.width} {self.height} ".encode(), cells))).hexdigest()

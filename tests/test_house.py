@@ -14,7 +14,10 @@ ROOT = Path(pymoo_gridpath.__file__).parent
 
 # From the ground up: a room imports from itself and from those before it. What stands in one line is one floor.
 FLOORS = (
-    ("errors", "checks", "compiled", "files", "memory", "neighbourhood", "progress", "registry", "versions"),
+    (
+        *("errors", "checks", "compiled", "deprecation", "files", "lazy", "memory", "neighbourhood", "progress", "registry"),
+        "versions",
+    ),
     ("grid",),
     ("fields",),
     ("maps",),

@@ -1,9 +1,36 @@
-"""What several commands take on the command line: each turns a text into its value, or says what is wrong."""
+"""What the commands share: exit codes, the parser, and types that turn a text into its value or say what is wrong."""
 
 from __future__ import annotations
 
 import argparse
+import math
+import re
+from collections.abc import Sequence
 from pathlib import Path
+
+from pymoo_gridpath.errors import visible
+
+EXIT_OK, EXIT_FAILED, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
+"""Done; no legal path was found, or runs of a study failed; bad input; ended by Ctrl-C."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line."""
+
+    def error(self, message):
+        """Say what was wrong in one line."""
+        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {visible(message)} (see {self.prog} --help)\n")
+
+
+def join_cells(argv: Sequence[str]) -> list[str]:
+    """Return arguments in which a cell such as -1,0 is joined to its option, which argparse would take for another option."""
+    joined: list[str] = []
+    for text in argv:
+        if joined and joined[-1] in ("--start", "--goal") and re.fullmatch(r"-\d+,.*", text):
+            joined[-1] += f"={text}"
+        else:
+            joined.append(text)
+    return joined
 
 
 def positive(text: str) -> int:
@@ -11,6 +38,33 @@ def positive(text: str) -> int:
     if not text.isdecimal() or int(text) == 0:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, one or more")
     return int(text)
+
+
+def natural(text: str) -> int:
+    """Return the whole number, zero or more, that a text says."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, zero or more")
+    return int(text)
+
+
+def share(text: str) -> float:
+    """Return the number above 0, at most 1, that a text says."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0.0 < number <= 1.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0, at most 1")
+    return number
+
+
+def cell(text: str) -> tuple[int, int]:
+    """Return the cell that a text such as "12,40" says."""
+    try:
+        x, y = (int(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a cell, expected X,Y such as 12,40") from None
+    return x, y
 
 
 def folder(text: str) -> Path:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import math
 import os
 from pathlib import Path
 
-from pymoo_gridpath.cli.arguments import folder, positive
+from pymoo_gridpath.cli.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, folder, positive, share
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.progress import say
 from pymoo_gridpath.study.running.progress import duration
-
-EXIT_OK, EXIT_FAILED_RUNS, EXIT_INTERRUPTED = 0, 1, 130
 
 # Other imports of the study stand in the functions, since other commands and --help do without.
 
@@ -48,7 +45,7 @@ def add_study_commands(commands) -> None:
     report.set_defaults(run=_report)
     report.add_argument("folder", metavar="DIR", help="what `study run` wrote")
     report.add_argument(
-        "--target", type=_share, metavar="R", help="share of the best hypervolume to be reached, above 0, at most 1"
+        "--target", type=share, metavar="R", help="share of the best hypervolume to be reached, above 0, at most 1"
     )
     report.add_argument("-o", "--output", type=folder, metavar="DIR2", help="where the report goes (default: DIR/report)")
 
@@ -58,16 +55,6 @@ def _add_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=folder, metavar="DIR", help="where results are kept (default: the file's name with -results)"
     )
-
-
-def _share(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not 0.0 < number <= 1.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0, at most 1")
-    return number
 
 
 # -- commands -----------------------------------------------------------------------------------------------------------
@@ -132,7 +119,7 @@ def _run(arguments) -> int:
         return EXIT_INTERRUPTED
     print(f"done: {outcome.n_run:,} run now, {outcome.n_done_before:,} before, {outcome.n_failed:,} failed")
     print(f"next: pymoo-gridpath study report {visible(folder)}")
-    return EXIT_FAILED_RUNS if outcome.n_failed else EXIT_OK
+    return EXIT_FAILED if outcome.n_failed else EXIT_OK
 
 
 def _report(arguments) -> int:

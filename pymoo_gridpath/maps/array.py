@@ -61,7 +61,7 @@ class NumpyFormat(MapFormat):
     """Arrays saved by `numpy.save`, see `read_npy`."""
 
     name, suffixes = "numpy", (".npy",)
-    read = staticmethod(read_npy)
+    read = staticmethod(read_npy)  # pyright: ignore[reportAssignmentType]
 
     def matches(self, head, path):
         return head.startswith(MAGIC)

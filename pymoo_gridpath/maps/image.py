@@ -172,7 +172,7 @@ class ImageFormat(MapFormat):
 
     name = "image"
     suffixes = (".png", ".pgm", ".pbm", ".ppm", ".pnm", ".bmp", ".gif", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
-    read = staticmethod(read_image)
+    read = staticmethod(read_image)  # pyright: ignore[reportAssignmentType]
 
     def matches(self, head, path):
         return _MAGIC.match(head) is not None

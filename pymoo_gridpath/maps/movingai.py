@@ -103,10 +103,10 @@ def read_movingai(
 
 @MAP_FORMATS.register
 class MovingAIFormat(MapFormat):
-    """Maps of the MovingAI benchmarks, see `read_movingai`; their queries and voxel maps, which it refuses, are told as well."""
+    """Maps of the MovingAI benchmarks, see `read_movingai`; its queries and voxel maps are told as well, and refused."""
 
     name, suffixes = "movingai", (".map", ".3dmap")
-    read = staticmethod(read_movingai)
+    read = staticmethod(read_movingai)  # pyright: ignore[reportAssignmentType]
 
     def matches(self, head, path):
         return head.removeprefix(b"\xef\xbb\xbf").split(maxsplit=1)[:1] in ([b"type"], [b"voxel"], [b"version"])

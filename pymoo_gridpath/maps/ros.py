@@ -101,7 +101,7 @@ class RosFormat(MapFormat):
     """Maps of the ROS map server, see `read_ros`."""
 
     name, suffixes = "ros", (".yaml", ".yml")
-    read = staticmethod(read_ros)
+    read = staticmethod(read_ros)  # pyright: ignore[reportAssignmentType]
 
     def matches(self, head, path):
         # An image may hold such a line as a comment.

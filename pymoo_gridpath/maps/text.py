@@ -141,7 +141,7 @@ class TextFormat(MapFormat):
     """Plain text, see `read_text`."""
 
     name, suffixes, catch_all = "text", (".txt",), True
-    read = staticmethod(read_text)
+    read = staticmethod(read_text)  # pyright: ignore[reportAssignmentType]
 
     def query(self, path):
         header = read_text_header(path)

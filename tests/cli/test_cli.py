@@ -11,7 +11,6 @@ import time
 
 import pytest
 
-from pymoo_gridpath import cli
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.progress import COMPILING, Progress
@@ -179,7 +178,7 @@ def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
         (["plan", "paper16", "--algorithm", "exact", "--pop-size", "5"], "--pop-size is not for --algorithm exact"),
         (["plan", "paper16", "--algorithm", "exact", "--runs", "2"], "--runs is not for --algorithm exact"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "MOPSO_CD"], "MOPSO_CD"),
-        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "invalid choice: 'real'"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "there is no representation 'real'"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "cells", "--axis", "y"], "advance along none"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--objectives", "lenght"], "did you mean 'length'"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "robot's radius of 5 m"),
@@ -297,7 +296,7 @@ def test_ctrl_c_in_compiled_code_ends_at_once(monkeypatch, capsys):
     def interrupted(*args):
         raise SystemError("a kernel returned a result with an exception set") from KeyboardInterrupt()
 
-    monkeypatch.setattr(cli, "shipped_maps", interrupted)
+    monkeypatch.setattr("pymoo_gridpath.maps.shipped_maps", interrupted)
     assert main(["maps"]) == 130
     assert capsys.readouterr().err == "pymoo-gridpath: interrupted\n"
 

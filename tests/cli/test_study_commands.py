@@ -220,7 +220,7 @@ def test_failed_runs_give_exit_code_one(tiny, capsys, monkeypatch):
         raise ValueError("broken")
 
     # What passes every check, and no run.
-    for module in ("execute", "estimate"):
+    for module in ("running.execute", "planning.estimate"):
         monkeypatch.setattr(f"pymoo_gridpath.study.{module}.build_algorithm", broken)
     assert call("run", "tiny.toml") == 1
     captured = capsys.readouterr()
@@ -273,9 +273,10 @@ def test_report(tiny, capsys):
 
 def test_help_loads_no_search():
     code = (
-        "import sys; from pymoo_gridpath.study import commands; "
-        "names = [f'pymoo_gridpath.study.{name}' for name in ('runner', 'specification.study', 'report')]; "
-        "heavy = [name for name in names if name in sys.modules]; "
+        "import contextlib, sys; from pymoo_gridpath.cli import main\n"
+        "with contextlib.suppress(SystemExit): main(['study', 'run', '--help'])\n"
+        "names = ('pymoo', 'scipy', 'numba', 'matplotlib', 'pymoo_gridpath.grid', 'pymoo_gridpath.study.running.runner')\n"
+        "heavy = [name for name in names if name in sys.modules]\n"
         "sys.exit(str(heavy) if heavy else 0)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -237,7 +237,7 @@ def test_defaults_of_the_command_line(tmp_path):
 
 
 def test_missing_query(tmp_path):
-    with pytest.raises(StudyError, match=r"no start and no goal.* \[x, y\]"):
+    with pytest.raises(StudyError, match=r"needs start and goal, expected a cell x,y with x from 0 to 2"):
         make([ProblemSpec(grid=OccupancyGrid(np.zeros((3, 3))))])
 
 

@@ -8,8 +8,7 @@ import warnings
 import numpy as np
 import pytest
 
-from pymoo_gridpath import cli
-from pymoo_gridpath.cli import main
+from pymoo_gridpath.cli import main, plan
 from pymoo_gridpath.errors import MapError, MapWarning, StudyError, visible
 from pymoo_gridpath.maps import load_map
 from pymoo_gridpath.progress import COMPILING
@@ -57,12 +56,12 @@ def test_messages_in_python_are_escaped_and_attributes_are_not():
 
 
 def test_warnings_are_one_line_each(capsys, monkeypatch):
-    def plan(arguments):
+    def warn(arguments):
         for path in ("a", "a", "b\n"):
             warnings.warn(MapWarning(path, "may be meant otherwise"), stacklevel=1)
         return 0
 
-    monkeypatch.setattr("pymoo_gridpath.cli._maps", plan)
+    monkeypatch.setattr("pymoo_gridpath.cli.maps._maps", warn)
     assert main(["maps"]) == 0
     lines = capsys.readouterr().err.splitlines()
     assert set(lines) == {f"pymoo-gridpath: warning: {path}: may be meant otherwise" for path in ("a", "b\\n")}
@@ -164,7 +163,7 @@ def test_a_map_that_goes_while_the_search_runs_loses_nothing(tmp_path, capsys, m
     path = tmp_path / "map.txt"
     path.write_text(ROOM)
     read = load_map(path)
-    search = cli._search
+    search = plan._search
 
     def search_and_move(*arguments):
         path.unlink()
@@ -172,7 +171,7 @@ def test_a_map_that_goes_while_the_search_runs_loses_nothing(tmp_path, capsys, m
             path.write_text(ROOM.replace("#", "."))
         return search(*arguments)
 
-    monkeypatch.setattr(cli, "_search", search_and_move)
+    monkeypatch.setattr(plan, "_search", search_and_move)
     output = tmp_path / "out"
     assert main(["plan", str(path), *FAST, "--radius", "0.6", "-o", str(output)]) == 0
     names = {file.name for file in output.iterdir()}

@@ -1,0 +1,94 @@
+"""The commands `pymoo-gridpath maps` and `info`, and how commands read a map."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pymoo_gridpath.cli.arguments import EXIT_OK
+from pymoo_gridpath.errors import counted, visible
+
+if TYPE_CHECKING:
+    from pymoo_gridpath.grid import OccupancyGrid
+
+
+def add_map_commands(commands) -> None:
+    """Add the commands `maps` and `info`; each sets ``run``, a function that returns the exit code."""
+    maps = commands.add_parser("maps", help="list the shipped maps", description=_maps.__doc__)
+    maps.set_defaults(run=_maps)
+
+    info = commands.add_parser("info", help="describe a map file", description=_info.__doc__)
+    info.set_defaults(run=_info)
+    info.add_argument("map", metavar="MAP", help="map file or name of a shipped map")
+    add_reading(info)
+
+
+def add_reading(parser: argparse.ArgumentParser) -> None:
+    """Add the options by which maps are read."""
+    group = parser.add_argument_group("reading the map")
+    group.add_argument("--resolution", type=float, metavar="M", help="metres a cell, for formats that do not say")
+    group.add_argument("--unknown", choices=("free", "occupied"), help="what unknown cells of ROS maps and images count as")
+    group.add_argument(
+        "--threshold", type=float, metavar="T", help="grey level below which an image's pixel is occupied, 0 to 1"
+    )
+    group.add_argument("--corner-cutting", action="store_true", default=None, help="allow diagonal steps past occupied cells")
+
+
+def load(name: str, arguments) -> OccupancyGrid:
+    """Return the grid of a file or of a shipped map, read with the options that `add_reading` adds."""
+    from pymoo_gridpath.maps import load_map
+
+    return load_map(name, **{key: getattr(arguments, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")})
+
+
+def unknown_of(grid: OccupancyGrid) -> str | None:
+    """Return in words how many cells of a map as read are unknown and what they count as; None if its kind knows none."""
+    if grid.unknown is None:
+        return None
+    n = int(np.count_nonzero(grid.unknown))
+    meaning = ("occupied" if (grid.occupied | ~grid.unknown).all() else "free") if n else ""
+    return counted(n, "cell") + (f", {n / grid.unknown.size:.1%}, taken as {meaning}" if n else "")
+
+
+def _maps(arguments) -> int:
+    """List the shipped maps with the query that `plan` solves on each by default."""
+    from pymoo_gridpath.maps import load_map, shipped_maps
+
+    for item in shipped_maps():
+        grid = load_map(item.name)
+        print(
+            f"{item.name:<12} {grid.width:>3} x {grid.height:<3} {item.title}; from {_text(item.start)} to {_text(item.goal)}"
+        )
+    return EXIT_OK
+
+
+def _info(arguments) -> int:
+    """Describe a map file as it is read."""
+    from pymoo_gridpath.maps import query_of
+
+    grid = load(arguments.map, arguments)
+    known = query_of(arguments.map)
+    occupied = grid.n_occupied
+    sizes = np.bincount(grid.regions.ravel())[1:]
+    x, y, yaw = grid.origin
+    rows = {
+        "name": grid.name,
+        "size": f"{grid.width} x {grid.height} cells, {grid.width * grid.resolution:g} x {grid.height * grid.resolution:g} m",
+        "resolution": f"{grid.resolution:g} m a cell",
+        "origin": f"x {x:g} m, y {y:g} m, yaw {yaw:g} rad, the corner of cell 0,0",
+        "occupied": f"{occupied} cells, {occupied / grid.occupied.size:.1%}",
+        **({} if (unknown := unknown_of(grid)) is None else {"unknown": unknown}),
+        "free regions": f"{len(sizes)}" + (f", the largest of {sizes.max()} cells" if len(sizes) else ""),
+        "corners": "may be cut" if grid.corner_cutting else "may not be cut",
+    }
+    if known.start and known.goal:
+        rows["query"] = f"from {_text(known.start)} to {_text(known.goal)}, robot radius {known.radius:g} m"
+    for key, value in rows.items():
+        print(f"{key:<13} {visible(value)}")
+    return EXIT_OK
+
+
+def _text(cell) -> str:
+    return f"{cell[0]},{cell[1]}"

@@ -1,0 +1,264 @@
+"""The command `pymoo-gridpath plan`."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pymoo_gridpath.cli.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, cell, folder, natural, positive
+from pymoo_gridpath.cli.maps import add_reading, load, unknown_of
+from pymoo_gridpath.errors import GridPathError, visible
+from pymoo_gridpath.progress import Progress, say
+
+if TYPE_CHECKING:
+    from pymoo_gridpath.grid import OccupancyGrid
+
+DEFAULT_MAP = "warehouse"
+
+# Rows of the printed table; the files hold all paths.
+MAX_ROWS = 40
+
+
+def add_plan_command(commands) -> None:
+    """Add the command `plan`; it sets ``run``, a function that returns the exit code."""
+    plan = commands.add_parser("plan", help="plan the trade-off paths of a query", description=_plan.__doc__)
+    plan.set_defaults(run=_plan)
+    plan.add_argument("map", nargs="?", metavar="MAP", help=f"map file or name of a shipped map (default: {DEFAULT_MAP})")
+    plan.add_argument("--start", type=cell, metavar="X,Y", help="start cell; x to the right, y up, from 0,0 at the bottom left")
+    plan.add_argument("--goal", type=cell, metavar="X,Y", help="goal cell")
+    plan.add_argument("--radius", type=float, default=0.0, metavar="M", help="robot radius in metres (default: a point)")
+    add_reading(plan)
+    search = plan.add_argument_group("search")
+    search.add_argument(
+        "--algorithm",
+        metavar="NAME",
+        help="nsga2, spea2, moead, ...; exact for the whole front (default: nsga2; ga for one objective)",
+    )
+    search.add_argument(
+        "--representation",
+        metavar="NAME",
+        help="how a path is coded (default: cells, which can turn back; integer where corners may be cut, which is the world "
+        "of the paper, or where an --axis is given)",
+    )
+    search.add_argument(
+        "--objectives",
+        type=lambda text: text.split(","),
+        default=["length", "vulnerability"],
+        metavar="A,B",
+        help="some of length, vulnerability, turn (default: length,vulnerability)",
+    )
+    search.add_argument(
+        "--obstacles", choices=("penalty", "constraint", "limit"), help="how collisions are ruled out (default: penalty)"
+    )
+    search.add_argument("--penalty", type=float, metavar="P", help="what crossing an occupied cell adds to each objective")
+    search.add_argument("--potential-limit", type=float, metavar="P0", help="largest vulnerability, with --obstacles limit")
+    search.add_argument(
+        "--axis",
+        choices=("auto", "x", "y"),
+        default="auto",
+        help="axis along which paths advance that never turn back (default: auto)",
+    )
+    search.add_argument("--pop-size", type=positive, metavar="N", help="population size (default: 200)")
+    search.add_argument("--generations", type=positive, metavar="N", help="generations of a run (default: 200)")
+    search.add_argument("--runs", type=positive, metavar="N", help="runs that are merged into one front (default: 1)")
+    search.add_argument(
+        "--max-seconds", type=float, metavar="S", help="time for --algorithm exact; what it has found by then is kept"
+    )
+    search.add_argument("--seed", type=natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
+    plan.add_argument(
+        "-o",
+        "--output",
+        type=folder,
+        default=Path("gridpath-out"),
+        metavar="DIR",
+        help="where files go (default: gridpath-out)",
+    )
+    plan.add_argument("--units", choices=("cells", "m"), default="cells", help="axes of the map figure (default: cells)")
+
+
+def _plan(arguments) -> int:
+    """Plan paths from a start to a goal, print the trade-off table, and write figures and files."""
+    # Imported late, since `maps`, `info` and --help do without.
+    from pymoo_gridpath.algorithms import ExactFront, make_algorithm
+    from pymoo_gridpath.compiled import COMPILED
+    from pymoo_gridpath.convergence import ConvergenceRecorder
+    from pymoo_gridpath.decision.provenance import describe_source
+    from pymoo_gridpath.maps.queries import check_grown, ends_of, query_of
+    from pymoo_gridpath.plotting import save_figures
+    from pymoo_gridpath.problems import GridPathProblem
+    from pymoo_gridpath.representations import default_representation
+
+    if arguments.obstacles == "limit" and arguments.potential_limit is None:
+        raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
+    map_name = arguments.map or DEFAULT_MAP
+    grid = load(map_name, arguments)
+    start, goal = grid.check_query(*ends_of(grid, query_of(map_name), arguments.start, arguments.goal, option="--"))
+    # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
+    unknown, source = unknown_of(grid), describe_source(grid)
+    grid = grid.inflate(arguments.radius)
+    check_grown(grid, arguments.radius, start, goal)
+    representation = arguments.representation or default_representation(grid.corner_cutting, arguments.axis)
+    arguments.needs = _needed(grid, start, representation, arguments)
+    problem = GridPathProblem(
+        grid,
+        start,
+        goal,
+        representation=representation,
+        objectives=arguments.objectives,
+        obstacles=arguments.obstacles or "penalty",
+        penalty=arguments.penalty,
+        potential_limit=arguments.potential_limit,
+        axis=arguments.axis,
+    )
+    name = arguments.algorithm or ("nsga2" if problem.n_obj > 1 else "ga")
+    algorithm = make_algorithm(name, problem, pop_size=arguments.pop_size or 200)
+    if isinstance(algorithm, ExactFront):
+        for option in ("pop_size", "generations", "runs"):
+            if getattr(arguments, option) is not None:
+                raise GridPathError(
+                    f"--{option.replace('_', '-')} is not for --algorithm exact, which finds the whole front at once"
+                )
+    arguments.generations, arguments.runs = arguments.generations or 200, arguments.runs or 1
+    if arguments.max_seconds is not None and not isinstance(algorithm, ExactFront):
+        raise GridPathError(f"--max-seconds is for --algorithm exact, not for {name}; expected --generations instead")
+    if not COMPILED and _searches_in_kernels(problem, algorithm):
+        print(
+            "numba is not installed, so the search runs as plain Python, many times slower; pip install 'pymoo_gridpath[fast]'",
+            file=sys.stderr,
+        )
+    _make_directory(arguments.output)
+
+    print(f"{visible(grid.name)}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
+    if unknown is not None:
+        print(f"unknown: {unknown}", flush=True)
+    with _StopOnCtrlC() as stop:
+        results = _search(problem, algorithm, arguments, stop)
+        stop.searching = False
+        if not any(len(result.pop) for result in results):
+            say(f"no path was found: {results[0].message}")
+            return EXIT_FAILED
+        trade_off, files = _write_paths(results, arguments, name, source, stop.requested)
+
+    if stop.requested:
+        print("interrupted: what was found until then follows", file=sys.stderr)
+    elif results[0].success is False:
+        print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
+    print(trade_off.table(max_rows=MAX_ROWS))
+    if trade_off.advice:
+        say(trade_off.advice)
+    if len(results) > 1:
+        print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
+    print("written: " + ", ".join(visible(file) for file in files), flush=True)
+    history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
+    figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
+    print("figures: " + ", ".join(visible(file) for file in figures))
+    if stop.requested:
+        return EXIT_INTERRUPTED
+    if not trade_off.feasible:
+        say(
+            "no legal path was found; a larger --pop-size, more --generations or --runs, or --obstacles constraint may find one"
+        )
+        return EXIT_FAILED
+    return EXIT_OK
+
+
+# -- parts ---------------------------------------------------------------------------------------------------------------
+
+
+def _needed(grid: OccupancyGrid, start, representation: str, arguments) -> str:
+    """Return what a plan costs in memory, in words."""
+    from pymoo_gridpath.memory import needed
+
+    height, width = grid.box_of(start).shape
+    exact = (arguments.algorithm or "").lower() == "exact"
+    return needed(representation, height * width, exact, "turn" in arguments.objectives, f"{width} x {height}")
+
+
+def _searches_in_kernels(problem, algorithm) -> bool:
+    """Return whether a search spends its time in kernels that numba compiles."""
+    from pymoo_gridpath.algorithms import ExactFront
+
+    return isinstance(algorithm, ExactFront) or problem.representation.name == "cells"
+
+
+def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
+    """Return the Results of the runs, with progress shown, ended early if Ctrl-C asks for it."""
+    from pymoo_gridpath.algorithms import ExactFront, minimize_runs
+    from pymoo_gridpath.convergence import ConvergenceRecorder
+
+    def observe(run, algorithm):
+        progress.update(run, algorithm)
+        return stop.requested
+
+    def watch(meter):
+        progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
+        return stop.requested
+
+    with Progress(arguments.runs, arguments.generations) as progress:
+        if isinstance(algorithm, ExactFront):
+            algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)
+            return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)
+        termination = ("n_gen", arguments.generations)
+        return minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)
+
+
+def _found_legal(result) -> bool:
+    return bool(np.any(np.asarray(result.pop.get("interfering_cells")) == 0))
+
+
+def _write_paths(results, arguments, name: str, source: dict, interrupted: bool):
+    """Return the trade-off set of the runs, and the files that it was written to."""
+    from pymoo_gridpath.decision import TradeOffSet
+
+    settings = {
+        "algorithm": {"name": name},
+        "robot_radius": arguments.radius,
+        "source_map": source,
+        "interrupted": interrupted,
+    }
+    trade_off = TradeOffSet.from_results(results, settings=settings)
+    files = [trade_off.to_csv(arguments.output / "paths.csv"), trade_off.to_json(arguments.output / "paths.json")]
+    return trade_off, files
+
+
+def _make_directory(path: Path) -> None:
+    """Make the output directory before the search, so that no result is lost for want of it."""
+    if path.exists() and not path.is_dir():
+        raise GridPathError(f"the output directory {path} is a file, expected a folder or a new name")
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        writable = os.access(path, os.W_OK)
+    except OSError as error:
+        raise GridPathError(f"the output directory {path} cannot be made: {error.strerror or error}") from None
+    if not writable:
+        raise GridPathError(f"the output directory {path} cannot be written to")
+
+
+class _StopOnCtrlC:
+    """While open, the first Ctrl-C asks the search to stop after the generation under way, the second ends it at once.
+
+    Once ``searching`` is False, Ctrl-C only makes a note, so that what was found is written.
+    """
+
+    def __init__(self):
+        self.requested = False
+        self.searching = True
+
+    def __enter__(self):
+        self._before = signal.signal(signal.SIGINT, self._request)
+        return self
+
+    def __exit__(self, *exception):
+        signal.signal(signal.SIGINT, self._before)
+
+    def _request(self, number, frame):
+        if self.requested and self.searching:
+            raise KeyboardInterrupt
+        if not self.requested:
+            print("\nstopping, and keeping what was found; Ctrl-C again ends at once and loses it", file=sys.stderr)
+        self.requested = True
