@@ -56,7 +56,8 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
     for key in given:
         if key not in kind.options:
             raise MapError(
-                path, f"the map format {kind.name!r} does not take the option {key!r}, expected one of {', '.join(kind.options)}"
+                path,
+                f"the map format {kind.name!r} does not take the option {key!r}, expected one of {', '.join(kind.options)}",
             )
     grid = kind.read(file, **given)
     if "unknown" in given and grid.unknown is not None and not grid.unknown.any():
