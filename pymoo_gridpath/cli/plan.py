@@ -183,7 +183,7 @@ def _searches_in_kernels(problem, algorithm) -> bool:
     """Return whether a search spends its time in kernels that numba compiles."""
     from pymoo_gridpath.algorithms import ExactFront
 
-    return isinstance(algorithm, ExactFront) or problem.representation.name == "cells"
+    return isinstance(algorithm, ExactFront) or not problem.representation.paper
 
 
 def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:

@@ -43,7 +43,7 @@ def describe_problem(problem) -> dict:
             "problem": type(problem).__name__,
             "representation": representation.name,
             "axis": getattr(getattr(representation, "frame", None), "axis", None),
-            "max_cells": getattr(representation, "max_cells", None),
+            "max_cells": representation.max_cells,
             "objectives": [{"name": f.name, **_scalars(f)} for f in problem.objectives],
             "obstacles": getattr(problem, "obstacles", None),
             "penalty": getattr(problem, "penalty", None),

@@ -19,7 +19,7 @@ from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
-from pymoo_gridpath.representations.base import MonotoneRepresentation, representation_of
+from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.versions import versions
 
 #: What members of a trade-off set go by, in the order in which tables and figures show them.
@@ -315,7 +315,7 @@ class TradeOffSet:
         excess = float(self.measures["length"].min()) / self.least_length - 1.0
         if excess <= _MUCH_LONGER:
             return ""
-        if isinstance(self.problem.representation, MonotoneRepresentation):
+        if self.problem.representation.monotone:
             attempts = "the representation 'cells', which codes every path, path-aware operators or more generations"
         else:
             attempts = "path-aware operators, more generations or the exact front"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
@@ -25,7 +25,8 @@ from pymoo_gridpath.operators.repair import EdgeFixing
 from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.operators.selection import SmoothnessTournament
 from pymoo_gridpath.operators.survival import RankAndSmoothness
-from pymoo_gridpath.representations.base import MonotoneRepresentation, representation_of
+from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.representations.mixed import MixedRepresentation
 
 __all__ = [
     "ArrayMating",
@@ -85,16 +86,16 @@ def paper_operators(problem, eta_crossover: float = 10.0, eta_mutation: float = 
     ----------
     Ahmed and Deb (2013), sections 2.1 to 2.3 and 5.2.
     """
-    representation = representation_of(problem)
-    if not isinstance(representation, MonotoneRepresentation):
+    representation: Any = representation_of(problem)
+    if not representation.paper:
         raise GridPathError(
             f"the paper names no operators for the {representation.name} representation, expected one of its own codings; "
             f"path_operators fit every representation"
         )
     rate = 1.0 / representation.frame.n_columns
-    if representation.name == "binary":
+    if representation.vtype is bool:
         crossover, mutation = TwoPointCrossover(prob=0.9), BitwiseMutation(prob_var=rate)
-    elif representation.name == "mixed":
+    elif isinstance(representation, MixedRepresentation):
         crossover, mutation = MixedCrossover(eta_crossover, prob=0.9), MixedMutation(eta_mutation, prob_var=rate)
     else:
         crossover, mutation = DiscreteSBX(eta_crossover, prob=0.9), DiscretePolynomialMutation(eta_mutation, prob_var=rate)
@@ -162,5 +163,4 @@ def default_operators(problem) -> dict:
     GridPathError
         If the problem has no path representation.
     """
-    of_the_paper = isinstance(representation_of(problem), MonotoneRepresentation)
-    return paper_operators(problem) if of_the_paper else path_operators(problem)
+    return paper_operators(problem) if representation_of(problem).paper else path_operators(problem)

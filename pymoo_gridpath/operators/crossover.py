@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from pymoo.core.crossover import Crossover
 from pymoo.core.variable import Real
@@ -20,6 +18,7 @@ from pymoo_gridpath.operators.parameters import (
     whole,
 )
 from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.representations.mixed import MixedRepresentation
 
 
 class DiscreteSBX(Crossover):
@@ -202,8 +201,8 @@ class MixedCrossover(Crossover):
 
 def bits_of(problem) -> int:
     """Return the number of bits at the head of a row of the mixed coding."""
-    representation: Any = representation_of(problem)
-    if representation.name != "mixed":
+    representation = representation_of(problem)
+    if not isinstance(representation, MixedRepresentation):
         raise GridPathError(f"the mixed operators need the mixed representation, the problem has {representation.name}")
     return representation.n_bits
 

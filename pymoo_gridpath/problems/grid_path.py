@@ -17,7 +17,8 @@ from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.objectives import Objective, boxed_field_of, make_objectives, prepared, visiting_costs
 from pymoo_gridpath.paths import check_paths
 from pymoo_gridpath.paths.frame import Axis, check_axis
-from pymoo_gridpath.representations import CellSequence, Representation, default_representation, make_representation
+from pymoo_gridpath.representations import Representation, default_representation, make_representation
+from pymoo_gridpath.representations.base import check_representation
 
 Obstacles = Literal["penalty", "constraint", "limit"]
 # Chosen by measurement on the shipped maps and random grids, see the parameter.
@@ -46,9 +47,10 @@ class GridPathProblem(Problem):
     grid : OccupancyGrid
     start, goal : (int, int)
         Free cells (x, y).
-    representation : {"cells", "integer", "binary", "mixed", "absolute"} or Representation, optional
-        How a path is coded as decision variables. "cells" codes every path, see `CellSequence`, and needs `path_operators`; the
-        other four are those of the paper, for paths that never turn back along an axis. The default is "cells", and "integer"
+    representation : str, type or Representation, optional
+        How a path is coded as decision variables: one of `REPRESENTATIONS` by name, a class of your own, or an object made for
+        the same query. "cells" codes every path, see `CellSequence`, and needs `path_operators`; "integer", "binary", "mixed"
+        and "absolute" are those of the paper, for paths that never turn back along an axis. The default is "cells", and "integer"
         where corners may be cut, which is the world of the paper, or an ``axis`` is given, see `default_representation`.
     objectives : sequence of str or Objective, default ("length", "vulnerability")
         What is minimised, in this order; names are "length", "vulnerability" and "turn".
@@ -121,7 +123,7 @@ class GridPathProblem(Problem):
         grid: OccupancyGrid,
         start: Sequence[int],
         goal: Sequence[int],
-        representation: str | Representation | None = None,
+        representation: str | type[Representation] | Representation | None = None,
         objectives: Sequence[str | Objective] = ("length", "vulnerability"),
         obstacles: Obstacles = "penalty",
         penalty: float | None = None,
@@ -143,21 +145,18 @@ class GridPathProblem(Problem):
         fields = [boxed_field_of(objective, grid, box) for objective in self.objectives]
         if representation is None:
             representation = default_representation(grid.corner_cutting, axis)
-        if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
-            # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
+        if isinstance(representation, str | type):
             costs = [
                 visiting_costs(objective, grid, grid.whole, field)
                 for objective, field in zip(self.objectives, fields, strict=True)
                 if objective.additive
             ]
-            costs = [cost for cost in costs if cost is not None]
-            spare = 2.0 if len(costs) > 1 or any(objective.turn_cost for objective in self.objectives) else 1.0
-            representation = CellSequence(grid, self.start, self.goal, fields=costs, spare=spare)
-        if isinstance(representation, str):
-            representation = make_representation(representation, grid, self.start, self.goal, axis)
+            turning = any(objective.turn_cost for objective in self.objectives)
+            known = [cost for cost in costs if cost is not None]
+            representation = make_representation(representation, grid, self.start, self.goal, axis, known, turning)
         else:
             self._check_representation(representation, axis)
-        self.representation = representation
+        self.representation: Representation = check_representation(representation)
         self._front: ExactResult | None = None
         # With how many seconds there was none, and why.
         self._no_front: tuple[float, str] | None = None
@@ -191,7 +190,8 @@ class GridPathProblem(Problem):
     def _check_representation(self, representation: Representation, axis: Axis) -> None:
         if not isinstance(representation, Representation):
             raise GridPathError(
-                f"representation is {shown(representation)}, expected a name such as 'integer', or a Representation"
+                f"representation is {shown(representation)}, expected a name such as 'integer', a class derived from "
+                f"Representation, or an object of one"
             )
         if (representation.grid, representation.start, representation.goal) != (self.grid, self.start, self.goal):
             raise GridPathError(
@@ -255,7 +255,7 @@ class GridPathProblem(Problem):
     # -- measures -----------------------------------------------------------------------------------------------------
 
     def decode(self, X: np.ndarray):
-        """Return the paths that the rows of X code, see `ColumnPaths` and `CellPaths`."""
+        """Return the paths that the rows of X code, see `Paths`."""
         return self.representation.decode(X)
 
     def score(self, paths) -> np.ndarray:

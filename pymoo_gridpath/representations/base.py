@@ -1,4 +1,4 @@
-"""What every path representation offers, and the parts that the monotone ones share."""
+"""What every path representation offers."""
 
 from __future__ import annotations
 
@@ -10,53 +10,123 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField, check_field
-from pymoo_gridpath.grid import Box, Cell, OccupancyGrid
-from pymoo_gridpath.neighbourhood import HEADINGS
-from pymoo_gridpath.paths import CellPaths, ColumnPaths
-from pymoo_gridpath.paths.frame import Axis, MonotoneFrame
+from pymoo_gridpath.grid import Box, Cell, OccupancyGrid, check_grid
+from pymoo_gridpath.paths import Paths, check_paths
 from pymoo_gridpath.paths.sequences import Sequences, check_sequences
+from pymoo_gridpath.registry import Registry
 from pymoo_gridpath.search.moves import Moves
 
 
 class Representation(ABC):
     """A coding of paths as rows of a decision matrix.
 
+    One of your own needs `decode` and `from_sequences`, a name, and a constructor that calls this one and sets `n_var`, `xl`
+    and `xu`. All else follows from these, and may be overridden where the coding knows better or faster.
+    `pymoo_gridpath.testing.RepresentationSuite` tests it; `pymoo_gridpath.registry.register` makes it known by its name.
+
+    Parameters
+    ----------
+    grid : OccupancyGrid
+    start, goal : (int, int)
+        Free cells (x, y) that a path joins.
+
+    Raises
+    ------
+    GridError, UnreachableError
+        If start or goal is no free cell, both are the same, or no path joins them.
+
     Attributes
     ----------
     name : str
         What the representation is called by name.
     vtype : type
-        ``int`` or ``bool``, the type of a gene.
+        ``int`` (the default), ``bool`` or ``float``, the type of a gene.
     n_var : int
         Number of genes.
-    xl, xu : numpy.ndarray of int, shape (n_var,)
+    xl, xu : numpy.ndarray, shape (n_var,)
         Bounds of the genes, both included.
     grid : OccupancyGrid
     start, goal : (int, int)
         The query that it codes paths for.
+    max_cells : int or None
+        The most cells that a path can visit, None (the default) if a row has room for every path.
+    paper : bool
+        Whether its default operators are those of Ahmed and Deb (2013), `paper_operators`, rather than `path_operators`.
+    monotone : bool
+        Whether its paths advance along an axis, which its constructor takes as ``axis``.
+    wants_fields : bool
+        Whether its constructor takes ``fields``, the costs of cells that paths are to be scored by, and ``spare``, by what
+        factor paths worth coding may be longer than the cheapest, see `make_representation`.
+
+    Examples
+    --------
+    The headings of the steps, and 8 to stay; a row that does not lead to the goal jumps there at its end:
+
+    >>> from pymoo_gridpath.neighbourhood import HEADING_OF, HEADINGS
+    >>> from pymoo_gridpath.paths import CellPaths
+    >>> class Headings(Representation):
+    ...     name = "headings"
+    ...
+    ...     def __init__(self, grid, start, goal):
+    ...         super().__init__(grid, start, goal)
+    ...         self.n_var = self.max_cells = self.moves.n_cells
+    ...         self.xl, self.xu = np.zeros(self.n_var, dtype=int), np.full(self.n_var, 8)
+    ...
+    ...     def decode(self, X):
+    ...         steps = np.vstack([HEADINGS, [[0, 0]]])[self.genes(X)]
+    ...         cells = np.clip(self.start + np.cumsum(steps, axis=1), 0, [self.grid.width - 1, self.grid.height - 1])
+    ...         ends = np.broadcast_to([[self.start], [self.goal]], (2, len(cells), 2))
+    ...         x, y = np.moveaxis(np.concatenate([ends[0][:, None], cells, ends[1][:, None]], axis=1), 2, 0)
+    ...         return CellPaths(self.grid, y * self.grid.width + x)
+    ...
+    ...     def from_sequences(self, sequences):
+    ...         cells = self.moves.cells(sequences.cells)
+    ...         X = np.full((len(sequences.lengths), self.n_var), 8)
+    ...         for row, first, end in zip(X, sequences.offsets, sequences.offsets[1:]):
+    ...             dx, dy = np.diff(cells[first:end], axis=0).T
+    ...             row[: len(dx)] = HEADING_OF[dy + 1, dx + 1]
+    ...         return X
+    >>> from pymoo_gridpath.problems import GridPathProblem
+    >>> grid = OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 0, 0]])
+    >>> problem = GridPathProblem(grid, (2, 0), (2, 2), Headings)
+    >>> problem.pareto_set().tolist()
+    [[2, 2, 8, 8, 8, 8, 8, 8, 8]]
     """
 
     name: str
-    vtype: type
+    vtype: type = int
     n_var: int
     xl: np.ndarray
     xu: np.ndarray
-    grid: OccupancyGrid
-    start: Cell
-    goal: Cell
+    max_cells: int | None = None
+    paper: bool = False
+    monotone: bool = False
+    wants_fields: bool = False
 
-    @functools.cached_property
-    def box(self) -> Box:
-        """The part of the grid in which legal paths lie, see `OccupancyGrid.box_of`; searches work on it alone."""
-        return self.grid.box_of(self.start)
+    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int]):
+        self.grid: OccupancyGrid = check_grid(grid)
+        self.start: Cell
+        self.goal: Cell
+        self.start, self.goal = grid.check_query(start, goal)
 
-    @property
+    # -- what every coding has of its own -----------------------------------------------------------------------------
+
     @abstractmethod
-    def moves(self) -> Moves:
-        """The legal steps of the paths that can be coded, in the `box`."""
+    def decode(self, X: np.ndarray) -> Paths:
+        """Return the paths that rows of genes code, without drawing a random number.
+
+        Parameters
+        ----------
+        X : numpy.ndarray, shape (N, n_var)
+            Not changed; `genes` checks them, and rounds real numbers.
+
+        Returns
+        -------
+        Paths
+            N paths, legal or not; those that are legal lead from the start to the goal.
+        """
 
     @abstractmethod
     def from_sequences(self, sequences: Sequences) -> np.ndarray:
@@ -65,11 +135,13 @@ class Representation(ABC):
         Parameters
         ----------
         sequences : Sequences
-            N paths from the start to the goal, by the indices of cells that `moves` has.
+            N paths from the start to the goal, by the indices of cells that `moves` has; its ``cells`` returns them as (x, y).
 
         Returns
         -------
         numpy.ndarray, shape (N, n_var), dtype `vtype`
+            The same paths, or else such as are no longer and visit no other cell. One path has one row, so that duplicates are
+            found by their genes.
 
         Raises
         ------
@@ -77,9 +149,22 @@ class Representation(ABC):
             If one of them has no code.
         """
 
+    # -- what follows from that -----------------------------------------------------------------------------------------
+
+    @functools.cached_property
+    def box(self) -> Box:
+        """The part of the grid in which legal paths lie, see `OccupancyGrid.box_of`; searches work on it alone."""
+        return self.grid.box_of(self.start)
+
+    @functools.cached_property
+    def moves(self) -> Moves:
+        """The legal steps of the paths that can be coded, in the `box`; all eight headings by default."""
+        return Moves(self.grid, box=self.box)
+
     def fits(self, sequences: Sequences) -> np.ndarray:
-        """Return which paths are no longer than a row can code, bool, shape (N,); all, unless rows have limited room."""
-        return np.ones(len(check_sequences(sequences, self.moves.n_cells).lengths), dtype=bool)
+        """Return which paths are no longer than a row can code, bool, shape (N,); by default by `max_cells`."""
+        lengths = check_sequences(sequences, self.moves.n_cells).lengths
+        return np.ones(len(lengths), dtype=bool) if self.max_cells is None else lengths <= self.max_cells
 
     def to_sequences(self, X: np.ndarray) -> Sequences:
         """Return the cells that the decoded paths visit, the inverse of `from_sequences`.
@@ -95,43 +180,25 @@ class Representation(ABC):
         """
         return self._in_box(self.decode(X))
 
-    def _checked_ends(self, sequences: Sequences) -> Sequences:
-        return check_ends(sequences, self, self.moves.index(self.start), self.moves.index(self.goal), self.moves.n_cells)
-
-    def _in_box(self, paths) -> Sequences:
-        """Return the cells that decoded paths visit by the indices that `moves` has."""
-        cells, offsets = paths.sequences
-        return Sequences(self.moves.from_grid(cells), offsets)
-
-    @abstractmethod
-    def decode(self, X: np.ndarray) -> ColumnPaths | CellPaths:
-        """Return the paths that rows of genes code, without drawing a random number.
+    def encode(self, paths: Paths) -> np.ndarray:
+        """Return the rows of genes that code paths, see `from_sequences`.
 
         Parameters
         ----------
-        X : numpy.ndarray, shape (N, n_var)
-
-        Returns
-        -------
-        ColumnPaths or CellPaths
-            N paths.
-        """
-
-    @abstractmethod
-    def encode(self, paths) -> np.ndarray:
-        """Return the rows of genes that code paths.
-
-        Parameters
-        ----------
-        paths : ColumnPaths or CellPaths
-            N paths, as `decode` returns them.
+        paths : Paths
+            N paths from the start to the goal, in the `box`.
 
         Returns
         -------
         numpy.ndarray, shape (N, n_var), dtype `vtype`
-        """
 
-    @abstractmethod
+        Raises
+        ------
+        GridPathError
+            If they are of another grid, lead between other cells, or have no code.
+        """
+        return self.from_sequences(self._checked_ends(self._in_box(self._on_grid(paths))))
+
     def prepare(self, field: np.ndarray | BoxedField) -> np.ndarray | BoxedField:
         """Return a field over the grid in the form that ``paths.total`` wants.
 
@@ -141,15 +208,33 @@ class Representation(ABC):
 
         Returns
         -------
-        numpy.ndarray
+        numpy.ndarray of float
+            By default by the index of the cell, shape (height * width,).
         """
+        if isinstance(field, BoxedField):
+            return field
+        return check_field("field", field, self.grid).astype(float).ravel()
 
-    @abstractmethod
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
-        """Return X with genes rewritten where they code what is no path: one that leaves the grid, or one with gaps."""
+        """Return X with genes rewritten by what rules the coding has for rows that are no paths; `PathRepair` mends the rest.
+
+        Parameters
+        ----------
+        X : numpy.ndarray, shape (N, n_var)
+        random_state : numpy.random.Generator
+            The only source of randomness.
+
+        Returns
+        -------
+        numpy.ndarray, shape (N, n_var), dtype `vtype`
+            A new array. By default the genes within their bounds, whatever they code.
+        """
+        return self.genes(X).astype(self.vtype)
 
     def genes(self, X: np.ndarray) -> np.ndarray:
-        """Return X as int64 within the bounds; real numbers, from operators that know no integers, are rounded.
+        """Return X as numbers within the bounds; real ones, from operators that know no integers, are rounded to int64.
+
+        Where `vtype` is float they stay as they are.
 
         Raises
         ------
@@ -173,8 +258,47 @@ class Representation(ABC):
                 raise GridPathError(
                     f"X holds values that are no finite numbers, expected genes of the {self.name} representation"
                 )
-            X = np.rint(X)
-        return np.clip(X, self.xl, self.xu).astype(np.int64, order="C", copy=False)
+            X = X if self.vtype is float else np.rint(X)
+        kind = float if self.vtype is float else np.int64
+        return np.clip(X, self.xl, self.xu).astype(kind, order="C", copy=False)
+
+    # -- what codings use -------------------------------------------------------------------------------------------------
+
+    def _checked_ends(self, sequences: Sequences) -> Sequences:
+        return check_ends(sequences, self, self.moves.index(self.start), self.moves.index(self.goal), self.moves.n_cells)
+
+    def _on_grid(self, paths: Paths) -> Paths:
+        """Return paths if they are of the grid."""
+        check_paths(paths)
+        if paths.grid is not self.grid and paths.grid != self.grid:
+            raise GridPathError(f"paths are of another grid than the {self.name} representation, expected its own")
+        return paths
+
+    def _in_box(self, paths: Paths) -> Sequences:
+        """Return the cells that decoded paths visit by the indices that `moves` has."""
+        cells, offsets = paths.sequences
+        return Sequences(self.moves.from_grid(cells), offsets)
+
+
+#: The representations by name, those that are registered or of installed packages included.
+REPRESENTATIONS: Registry[type[Representation]] = Registry("representation", "pymoo_gridpath.representations", Representation)
+
+
+def check_representation(representation: Representation) -> Representation:
+    """Return a representation if its constructor has set all that it must."""
+    kind = type(representation).__name__
+    for key in ("name", "n_var", "xl", "xu", "grid", "start", "goal"):
+        if not hasattr(representation, key):
+            raise GridPathError(f"the representation {kind} does not have {key!r}; expected its class or constructor to set it")
+    if representation.vtype not in (int, bool, float):
+        raise GridPathError(f"vtype of the representation {kind} is {shown(representation.vtype)}, expected int, bool or float")
+    shapes = np.shape(representation.xl), np.shape(representation.xu)
+    if shapes != ((representation.n_var,),) * 2:
+        raise GridPathError(
+            f"xl and xu of the representation {kind} have the shapes {shapes[0]} and {shapes[1]}, expected a bound for each of "
+            f"its {representation.n_var} genes"
+        )
+    return representation
 
 
 def representation_of(problem) -> Representation:
@@ -188,163 +312,7 @@ def representation_of(problem) -> Representation:
 def max_cells(problem) -> int:
     """Return the most cells that a path of the problem's representation can visit."""
     representation = problem.representation
-    return getattr(representation, "max_cells", representation.moves.n_cells)
-
-
-class MonotoneRepresentation(Representation):
-    """Base of the codings of Ahmed and Deb (2013, section 2): one step to the next column a gene.
-
-    Parameters
-    ----------
-    grid : OccupancyGrid
-    start, goal : (int, int)
-        Cells (x, y).
-    axis : {"auto", "x", "y"}, default "auto"
-        The axis along which paths advance, see `MonotoneFrame`.
-
-    Raises
-    ------
-    GridError, UnreachableError
-        See `MonotoneFrame`.
-
-    Attributes
-    ----------
-    frame : MonotoneFrame
-    """
-
-    def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
-        self.frame = MonotoneFrame(grid, start, goal, axis)
-        self.grid, self.start, self.goal = grid, self.frame.start, self.frame.goal
-
-    def prepare(self, field: np.ndarray | BoxedField) -> np.ndarray | BoxedField:
-        """Return a field over the grid as prefix sums up each column of the frame.
-
-        If these lose the cost of a cell, as those of cheap cells beside dear ones, it is returned by the index of the cell, in
-        float, shape (height * width,).
-        """
-        field = check_field("field", np.asarray(field) if isinstance(field, BoxedField) else field, self.grid).astype(float)
-        with np.errstate(invalid="ignore", over="ignore"):
-            sums = self.frame.prefix_sums(field)
-            if np.array_equal(np.diff(sums, axis=1), self.frame.columns(field)):
-                return sums
-        return field.ravel()
-
-    @functools.cached_property
-    def moves(self) -> Moves:
-        """The legal steps along the five headings that do not go back: forward, diagonally forward, and across."""
-        k = 0 if self.frame.axis == "x" else 1
-        forward = np.sign(self.goal[k] - self.start[k]) * HEADINGS[:, k] >= 0
-        return Moves(self.grid, np.flatnonzero(forward).tolist(), self.box)
-
-    def from_sequences(self, sequences: Sequences) -> np.ndarray:
-        """Return the rows of genes that code paths given by the cells that they visit.
-
-        Parameters
-        ----------
-        sequences : Sequences
-            N paths from the start to the goal, monotone along the axis. What counts is where a path enters and leaves each
-            column; a path that is longer than it need be between the two gets the genes of the direct way, see `encode`.
-
-        Returns
-        -------
-        numpy.ndarray, shape (N, n_var), dtype `vtype`
-            Genes of paths that are no longer, and legal where the given ones are.
-
-        Raises
-        ------
-        GridPathError
-            If a path leads from or to another cell, jumps, or goes back along the axis.
-        """
-        return self.encode(self._column_paths(sequences)).astype(self.vtype, copy=False)
-
-    def _column_paths(self, sequences: Sequences) -> ColumnPaths:
-        """Return the paths that enter and leave each column where the given ones do."""
-        sequences = self._checked_ends(sequences)
-        frame, shape = self.frame, (len(sequences.lengths), self.frame.n_columns)
-        column, row = frame.from_cells(self.moves.cells(sequences.cells))
-        first = np.zeros(len(column), dtype=bool)
-        first[sequences.offsets[:-1]] = True
-        gain, climb = np.diff(column)[~first[1:]], np.diff(row)[~first[1:]]
-        if ((gain < 0) | (gain > 1) | (np.abs(climb) > 1)).any():
-            raise GridPathError(
-                f"a path jumps or goes back along the axis {frame.axis!r}, expected steps between neighbouring cells that the "
-                f"{self.name} representation can code"
-            )
-        # A path is never back in a column that it left, so each run of equal columns is one column of one path.
-        enters = first | (np.diff(column, prepend=-1) != 0)
-        leaves = np.roll(enters, -1)
-        return ColumnPaths(frame, row[enters].astype(np.int32).reshape(shape), row[leaves].astype(np.int32).reshape(shape))
-
-    def _own(self, paths: ColumnPaths) -> ColumnPaths:
-        """Return paths if they are of this frame."""
-        frame = checks.instance("paths", paths, ColumnPaths, ", as decode returns them").frame
-        if frame is not self.frame and any(
-            getattr(frame, key) != getattr(self.frame, key) for key in ("axis", "start", "goal", "grid")
-        ):
-            raise GridPathError("paths are of another grid, start, goal or axis than the representation, expected its own")
-        return paths
-
-    @property
-    def _n_moves(self) -> int:
-        """Number of coded moves: the climb in the start column and every step but the last."""
-        return self.frame.n_columns - 1
-
-    @abstractmethod
-    def row_moves(self, X: np.ndarray) -> np.ndarray:
-        """Return the rows gained by each coded move, int, shape (N, n_columns - 1); move 0 is the climb at the start."""
-
-    def exit_rows(self, X: np.ndarray) -> np.ndarray:
-        """Return the row at which each column but the last is left, int, shape (N, n_columns - 1).
-
-        A move that would leave the grid ends at the edge, without drawing a number.
-        """
-        return _rows_within(self.row_moves(X), self.frame)
-
-    def decode(self, X: np.ndarray) -> ColumnPaths:
-        """Return the paths that the rows of X code.
-
-        Parameters
-        ----------
-        X : numpy.ndarray, shape (N, n_var)
-            Genes. Real numbers are rounded to the nearest gene.
-
-        Returns
-        -------
-        ColumnPaths
-            N paths from the start to the goal; the last column is climbed to the goal whatever the genes (the paper's end
-            fixing). A move that would leave the grid ends at its edge: `repair` is what draws the paper's random row.
-        """
-        return ColumnPaths._through_unchecked(self.frame, self.exit_rows(X))
-
-    def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
-        """Return X with the paper's random edge fixing written into the genes (section 2.1).
-
-        A move that would leave the grid is replaced by one to a row between the vehicle's row and the edge, drawn with a
-        probability that rises linearly from zero at the vehicle's row to its maximum at the edge. At the edge itself
-        there is no such row, and the vehicle stays in its row.
-
-        Parameters
-        ----------
-        X : numpy.ndarray, shape (N, n_var)
-        random_state : numpy.random.Generator
-
-        Returns
-        -------
-        numpy.ndarray, shape (N, n_var), dtype `vtype`
-            A new array; rows that need no fixing are as they were.
-        """
-        checks.instance("random_state", random_state, np.random.Generator, " such as numpy.random.default_rng(1)")
-        X = self.genes(X).astype(self.vtype)
-        moves = self.row_moves(X)
-        outside = _rows_and_outside(moves, self.frame)[1]
-        if len(outside):
-            fixed = _fix_edges(moves[outside], self.frame, random_state)
-            X[outside] = self._rewrite(X[outside], moves[outside], fixed)
-        return X
-
-    @abstractmethod
-    def _rewrite(self, X: np.ndarray, moves: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-        """Return X with the genes changed where ``fixed`` moves differ from ``moves``."""
+    return representation.moves.n_cells if representation.max_cells is None else representation.max_cells
 
 
 def check_ends(sequences: Sequences, representation: Representation, first: int, last: int, n_cells: int) -> Sequences:
@@ -362,75 +330,3 @@ def check_ends(sequences: Sequences, representation: Representation, first: int,
             f"expected paths of the query"
         )
     return sequences
-
-
-def _rows_and_outside(moves: np.ndarray, frame: MonotoneFrame) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows that moves lead to, and the indices of the paths among which one lies off the grid."""
-    rows = np.cumsum(moves, axis=1, dtype=np.int32)
-    rows += frame.start_row
-    return rows, np.flatnonzero((rows.min(axis=1) < 0) | (rows.max(axis=1) >= frame.n_rows))
-
-
-def _rows_within(moves: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
-    """Add up moves from the start row, stopping each at the edge of the grid."""
-    rows, outside = _rows_and_outside(moves, frame)
-    if len(outside):
-        row = np.full(len(outside), frame.start_row)
-        for k in range(moves.shape[1]):
-            row = np.clip(row + moves[outside, k], 0, frame.n_rows - 1)
-            rows[outside, k] = row
-    return rows
-
-
-def _fix_edges(moves: np.ndarray, frame: MonotoneFrame, random_state: np.random.Generator) -> np.ndarray:
-    """Return moves that stay on the grid, redrawing by a linear distribution those that leave it."""
-    draws = random_state.random(moves.shape)
-    if COMPILED:
-        return _fix_path_by_path(np.ascontiguousarray(moves), draws, frame.start_row, frame.n_rows)
-    return _fix_move_by_move(moves, draws, frame)
-
-
-@kernel
-def _fix_path_by_path(moves, draws, start_row, n_rows):
-    """Do what `_fix_move_by_move` does, several times as fast if compiled, and as much slower if not."""
-    fixed = moves.copy()
-    for i in range(len(moves)):
-        row = start_row
-        for k in range(moves.shape[1]):
-            target = row + moves[i, k]
-            if target < 0 or target >= n_rows:
-                room = n_rows - 1 - row if target >= n_rows else row
-                step = 0
-                if room > 0:
-                    weight = draws[i, k] * (room * (room + 1) / 2)
-                    step = min(max(int(np.floor((np.sqrt(8.0 * weight + 1.0) + 1.0) / 2.0)), 1), room)
-                fixed[i, k] = step if target >= n_rows else -step
-                target = row + fixed[i, k]
-            row = target
-    return fixed
-
-
-def _fix_move_by_move(moves: np.ndarray, draws: np.ndarray, frame: MonotoneFrame) -> np.ndarray:
-    """Mend the first offending move of every path in each round, since what follows shifts with it."""
-    fixed = moves.copy()
-    rows, outside = _rows_and_outside(fixed, frame)
-    left = outside
-    while len(left):
-        beyond = (rows[outside] < 0) | (rows[outside] >= frame.n_rows)
-        k = beyond.argmax(axis=1)
-        target = rows[outside, k].astype(np.int64)
-        row = target - fixed[left, k]
-        up = target >= frame.n_rows
-        step = _draw_linear(np.where(up, frame.n_rows - 1 - row, row), draws[left, k])
-        fixed[left, k] = np.where(up, step, -step)
-        rows, outside = _rows_and_outside(fixed[left], frame)
-        left = left[outside]
-    return fixed
-
-
-def _draw_linear(room: np.ndarray, draw: np.ndarray) -> np.ndarray:
-    """Return whole numbers from 1 to ``room`` with probabilities proportional to themselves; 0 where there is no room."""
-    weight = draw * (room * (room + 1) / 2)
-    # Number j is drawn for weights in [j (j - 1) / 2, j (j + 1) / 2).
-    number = np.floor((np.sqrt(8.0 * weight + 1.0) + 1.0) / 2.0).astype(np.int64)
-    return np.where(room > 0, np.clip(number, 1, np.maximum(room, 1)), 0)

@@ -10,7 +10,7 @@ import numpy as np
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 from pymoo_gridpath.paths.frame import Axis
-from pymoo_gridpath.representations.base import MonotoneRepresentation
+from pymoo_gridpath.representations.monotone import MonotoneRepresentation
 
 
 class BinaryRepresentation(MonotoneRepresentation):

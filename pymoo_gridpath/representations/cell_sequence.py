@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
 from collections.abc import Sequence
@@ -13,12 +12,11 @@ from scipy.sparse import csgraph
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.fields import BoxedField, check_costs, check_field, obstacle_potential
-from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
-from pymoo_gridpath.paths import CellPaths, check_paths
-from pymoo_gridpath.paths.sequences import Sequences, check_sequences
+from pymoo_gridpath.fields import BoxedField, check_costs, obstacle_potential
+from pymoo_gridpath.grid import Box, OccupancyGrid
+from pymoo_gridpath.paths import CellPaths, Paths
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import Representation, check_ends
-from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sequences import cut_loops, mend
 
 # Of up to so many fields sums are looked at for the default length of a row: as many as an exact front has objectives.
@@ -53,10 +51,10 @@ class CellSequence(Representation):
     fields : sequence of numpy.ndarray, shape (height, width), optional
         Costs of cells, the sums of which paths are to be scored by; there is room then for the cheapest paths in each, and in
         any sum of them if there are two or three, rather than for the safest in the default potential. A problem that is given
-        the representation by name passes those of its objectives.
+        the representation by name or class passes those of its objectives.
     spare : float, default 1
         Factor on the default of ``max_cells``, 1 or more. Paths that turn little, and compromises between several fields, may
-        be longer than the cheapest ones; a problem with such objectives that is given the representation by name passes 2.
+        be longer than the cheapest ones; `make_representation` passes 2 for problems with such objectives.
 
     Raises
     ------
@@ -82,7 +80,8 @@ class CellSequence(Representation):
     """
 
     name = "cells"
-    vtype = int
+    wants_fields = True
+    max_cells: int
 
     def __init__(
         self,
@@ -93,8 +92,7 @@ class CellSequence(Representation):
         fields=(),
         spare: float = 1.0,
     ):
-        self.grid = check_grid(grid)
-        self.start, self.goal = grid.check_query(start, goal)
+        super().__init__(grid, start, goal)
         spare = checks.number("spare", spare, 1.0, expected="a factor of 1 or more")
         self.max_cells = _room(self, max_cells, fields, spare)
         self.n_var = self.max_cells
@@ -102,11 +100,6 @@ class CellSequence(Representation):
         self.xu = np.full(self.n_var, grid.occupied.size - 1)
         self.xl[0] = self.xu[0] = self.start[1] * grid.width + self.start[0]
         self.xl[-1] = self.xu[-1] = self.goal[1] * grid.width + self.goal[0]
-
-    @functools.cached_property
-    def moves(self) -> Moves:
-        """The legal steps, along all eight headings."""
-        return Moves(self.grid, box=self.box)
 
     def decode(self, X: np.ndarray) -> CellPaths:
         """Return the paths that the rows of X code.
@@ -123,14 +116,10 @@ class CellSequence(Representation):
         """
         return CellPaths._unchecked(self.grid, self.genes(X))
 
-    def encode(self, paths) -> np.ndarray:
+    def encode(self, paths: Paths) -> np.ndarray:
         """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""
-        sequences = check_paths(paths).sequences
+        sequences = self._on_grid(paths).sequences
         return self._rows(check_ends(sequences, self, int(self.xl[0]), int(self.xl[-1]), self.grid.occupied.size))
-
-    def fits(self, sequences: Sequences) -> np.ndarray:
-        """Return which paths have no more cells than a row has genes, bool, shape (N,)."""
-        return check_sequences(sequences, self.moves.n_cells).lengths <= self.max_cells
 
     def from_sequences(self, sequences: Sequences) -> np.ndarray:
         """Return the rows of genes that code paths given by the cells that they visit.
@@ -174,12 +163,6 @@ class CellSequence(Representation):
         X = np.full((len(lengths), self.n_var), self.xu[-1], dtype=np.int64)
         X[np.arange(self.n_var) < lengths[:, None]] = sequences.cells
         return X
-
-    def prepare(self, field: np.ndarray | BoxedField) -> np.ndarray | BoxedField:
-        """Return a field over the grid by the index of the cell, shape (height * width,)."""
-        if isinstance(field, BoxedField):
-            return field
-        return check_field("field", field, self.grid).astype(float).ravel()
 
     def repair(self, X: np.ndarray, random_state: np.random.Generator) -> np.ndarray:
         """Return X with rows rewritten that are no legal paths.

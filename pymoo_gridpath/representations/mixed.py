@@ -9,7 +9,7 @@ import numpy as np
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import ColumnPaths
 from pymoo_gridpath.paths.frame import Axis
-from pymoo_gridpath.representations.base import MonotoneRepresentation
+from pymoo_gridpath.representations.monotone import MonotoneRepresentation
 
 
 class MixedRepresentation(MonotoneRepresentation):
@@ -32,7 +32,6 @@ class MixedRepresentation(MonotoneRepresentation):
     """
 
     name = "mixed"
-    vtype = int
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
         super().__init__(grid, start, goal, axis)

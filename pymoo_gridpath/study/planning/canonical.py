@@ -10,7 +10,7 @@ from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.problems.grid_path import DEFAULT_PENALTY
-from pymoo_gridpath.representations import REPRESENTATIONS, MonotoneRepresentation
+from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.specification.operators import SLOTS, default_operator
 
 DEFAULT_POP_SIZE = 100
@@ -79,7 +79,7 @@ def _overridden(problem: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     if overrides.get("obstacles", problem["obstacles"]) != problem["obstacles"]:
         # They belong to the handling that is given up.
         changed |= {"penalty": None, "potential_limit": None}
-    if overrides.get("representation") == "cells":
+    if "representation" in overrides and not REPRESENTATIONS[overrides["representation"]].monotone:
         changed["axis"] = "auto"
     return settle(changed | dict(overrides))
 
@@ -87,7 +87,7 @@ def _overridden(problem: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
 def _preset_overrides(problem: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the paper's planner changes in a problem, see `ahmed_deb_2013`."""
     brought: dict[str, Any] = {}
-    if not issubclass(REPRESENTATIONS[problem["representation"]], MonotoneRepresentation):
+    if not REPRESENTATIONS[problem["representation"]].paper:
         brought["representation"] = "integer"
     if len(problem["objectives"]) == 1 and problem["obstacles"] == "penalty":
         brought["obstacles"] = "constraint"
@@ -100,7 +100,7 @@ def _resolved_operators(given: Mapping[str, Any], algorithm: str, representation
     """Return every operator of an algorithm on problems of a representation; "paper" where `paper_operators` decides."""
     base = given["base"]
     if base == "default":
-        base = "paper" if issubclass(REPRESENTATIONS[representation], MonotoneRepresentation) else "scalarized"
+        base = "paper" if REPRESENTATIONS[representation].paper else "scalarized"
     # Differential evolution makes its children itself.
     slots = list(SLOTS) if CAPABILITIES[algorithm].operators or given["base"] != "default" else ["sampling", "repair"]
     names: dict[str, str] = dict(_PATH)

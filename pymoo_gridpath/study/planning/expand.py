@@ -10,7 +10,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import CAPABILITIES
-from pymoo_gridpath.representations import REPRESENTATIONS, MonotoneRepresentation, make_representation
+from pymoo_gridpath.representations import REPRESENTATIONS, make_representation
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem
 from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedProblem, PlannedRun, is_exact, run_key
@@ -97,8 +97,8 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
         about = f"problem {planned.label!r}: "
         refuse(study, place_of(group), about, build_problem, planned.spec, planned.grid)
         members = [problems[k] for k in range(len(problems)) if groups[k] == group]
-        checked = {planned.spec["representation"]} & _monotone()
-        if checked:
+        checked = {planned.spec["representation"]}
+        if REPRESENTATIONS[planned.spec["representation"]].monotone:
             _check_advancing(study, place_of(group), members, planned.spec)
         for k, algorithm in enumerate(algorithms):
             where, about = ("algorithms", k), f"{algorithm.label!r} does not suit the problem {planned.label!r}: "
@@ -112,16 +112,12 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
             _check_promises(study, k, problem, settled, made)
             if not is_exact(settled):
                 pairs.append(Pair(content, settled, planned.grid, planned.label, k))
-            if content["representation"] in _monotone() - checked:
+            if REPRESENTATIONS[content["representation"]].monotone and content["representation"] not in checked:
                 checked.add(content["representation"])
                 _check_advancing(study, where, members, content)
     for pair in one_of_each_kind(pairs):
         about = f"{algorithms[pair.index].label!r} fails on the problem {pair.label!r}: "
         refuse(study, ("algorithms", pair.index), about, run_briefly, pair)
-
-
-def _monotone() -> set[str]:
-    return {name for name, cls in REPRESENTATIONS.items() if issubclass(cls, MonotoneRepresentation)}
 
 
 def _check_advancing(study: Study, where, members: list[PlannedProblem], content: Mapping[str, Any]) -> None:
