@@ -14,9 +14,10 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.quality import ReferenceFront, first_reaching, merge_fronts
+from pymoo_gridpath.quality import ReferenceFront, merge_fronts
 from pymoo_gridpath.study.planning.canonical import resolve
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, is_exact
+from pymoo_gridpath.study.report.statistics.summaries import first_reaching
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
 from pymoo_gridpath.study.running.store import Store, readable
 

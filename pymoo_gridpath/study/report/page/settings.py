@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from pymoo_gridpath.quality import quartiles
 from pymoo_gridpath.study.planning.canonical import resolve
 from pymoo_gridpath.study.planning.plan import PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.page.blocks import Block, Fold, Heading, Listing, Text
 from pymoo_gridpath.study.report.results import Results
+from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.summary import reference_phrase
 from pymoo_gridpath.study.report.tables.table import NOTHING, Table, count, significant, spread
 from pymoo_gridpath.study.specification.operators import operator_classes
