@@ -21,6 +21,7 @@ from pymoo_gridpath.problems.members import Members
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
 from pymoo_gridpath.study.planning.plan import Task, needed_for
 from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
+from pymoo_gridpath.study.specification.kinds import objective_name
 from pymoo_gridpath.versions import versions
 
 #: Most records of a history: beyond that, every second one is dropped, and from then on half as many are made.
@@ -51,7 +52,7 @@ def execute(task: Task) -> bytes:
 
 def failed_run(task: Task, message: str, started: str | None = None, seconds: float = 0.0) -> bytes:
     """Return the bytes of the record of a run that failed."""
-    objectives = [str(name) for name in task.problem.get("objectives", [])]
+    objectives = [objective_name(one) for one in task.problem.get("objectives", [])]
     return to_bytes(
         RunRecord(
             key=task.key,
@@ -154,7 +155,8 @@ def _most_generations(algorithm: Any) -> float:
     most = getattr(algorithm.termination, "n_max_evals", None)
     if most is None:
         return math.inf
-    return _LONGEST[0] * math.ceil(most / max(algorithm.n_offsprings or algorithm.pop_size, 1)) + _LONGEST[1]
+    a_generation = getattr(algorithm, "n_offsprings", None) or getattr(algorithm, "pop_size", None) or 1
+    return _LONGEST[0] * math.ceil(most / a_generation) + _LONGEST[1]
 
 
 class Recorder(Callback):
