@@ -13,6 +13,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.problems.members import Members
 
 
 class ConvergenceRecorder(Callback):
@@ -63,18 +64,21 @@ class ConvergenceRecorder(Callback):
 
     # pymoo's CallbackCollection calls update() only, so this is the hook that works everywhere.
     def _update(self, algorithm: Any) -> None:
-        problem = algorithm.problem
         if self._measures is None:
-            self._measures = PathMeasures(problem)
-        paths = problem.decode(algorithm.pop.get("X"))
-        paths = paths[np.flatnonzero(self._measures.legal(paths))]
+            self._measures = PathMeasures(algorithm.problem)
+        members = Members(algorithm)
         self.evaluations.append(int(algorithm.evaluator.n_eval))
         self.generations.append(int(algorithm.n_iter))
-        self.n_feasible.append(len(paths))
-        self.best_length.append(float(np.min(paths.length, initial=np.inf)))
-        self.best_vulnerability.append(float(np.min(self._measures.vulnerability(paths), initial=np.inf)))
-        front = np.unique(np.asarray(problem.score(paths), dtype=float), axis=0)
-        front = front[moocore.is_nondominated(front)] if len(front) else front
+        self.n_feasible.append(members.n_legal)
+        best_length, best_vulnerability = members.least("length"), members.least("vulnerability")
+        if np.isnan(best_length) or np.isnan(best_vulnerability):
+            # Measured, where they are no objectives.
+            paths = algorithm.problem.decode(members.X(np.arange(members.n_legal), algorithm.problem.n_var))
+            best_length = float(np.min(paths.length, initial=np.inf))
+            best_vulnerability = float(np.min(self._measures.vulnerability(paths), initial=np.inf))
+        self.best_length.append(best_length)
+        self.best_vulnerability.append(best_vulnerability)
+        front = members.F[members.front()]
         # Late generations often agree; one array then serves them all.
         same = bool(self.fronts) and np.array_equal(self.fronts[-1], front)
         self.fronts.append(self.fronts[-1] if same else front)

@@ -1,15 +1,20 @@
-"""Measures of a run: how near its front comes to the front that it is measured against, and how soon.
+"""How near a set of points comes to a front, such as the exact one of a problem.
 
-They are functions of arrays. All objectives are minimised and only points of legal paths count.
+The functions measure one set of points; `ReferenceFront` measures many against one front. All objectives are minimised, and
+only points of legal paths should be given, as `TradeOffSet` holds them.
 """
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import moocore
 import numpy as np
 from scipy.spatial import KDTree
+
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
 
 #: By which share of an objective's largest size two values may differ and still be equal.
 SAME = 1e-9
@@ -28,7 +33,7 @@ class ReferenceFront:
     ----------
     points : numpy.ndarray, shape (K, n_obj)
         Mutually non-dominated; K may be 0 if no legal path is known.
-    exact : bool
+    exact : bool, default True
         Whether this is the whole Pareto front of the problem.
 
     Attributes
@@ -41,22 +46,30 @@ class ReferenceFront:
         those of a single point, counts in its own unit.
     """
 
-    def __init__(self, points: np.ndarray, exact: bool):
+    def __init__(self, points: np.ndarray, exact: bool = True):
         self.points = merge_fronts([np.asarray(points, dtype=float)])
         self.exact = exact
         if not len(self.points):
             return
         self.low = self.points.min(axis=0)
-        self.scale = np.maximum(np.abs(self.points).max(axis=0), np.finfo(float).tiny)
+        sizes = np.abs(self.points).max(axis=0)
+        # Of an objective that is 0 throughout, in its own unit.
+        self.scale = np.where(sizes > 0.0, sizes, 1.0)
         ranges = np.ptp(self.points, axis=0)
         self.span = np.where(ranges > SAME * self.scale, ranges, 1.0)
         self._corner = np.full(len(self.low), 1.0 + _MARGIN)
         self._normalised = self.normalise(self.points)
-        self._volume: Any = moocore.hypervolume(self._normalised, ref=self._corner)
-        self._tree = KDTree(self.points / self.scale)
 
     def __len__(self) -> int:
         return len(self.points)
+
+    @cached_property
+    def _volume(self) -> Any:
+        return moocore.hypervolume(self._normalised, ref=self._corner)
+
+    @cached_property
+    def _tree(self) -> KDTree:
+        return KDTree(self.points / self.scale)
 
     def normalise(self, F: np.ndarray) -> np.ndarray:
         """Return points with the front's ideal point at 0 and, where the front has a range, its nadir at 1."""
@@ -142,6 +155,122 @@ class ReferenceFront:
         return (np.asarray(F) <= self.points[0] + SAME * self.scale).all(axis=1)
 
 
+def hypervolume_ratio(F: Any, front: Any) -> float:
+    """Return the hypervolume of points over that of a front.
+
+    Both are normalised by the front's range; the reference point lies a tenth of that range beyond the front's nadir in each
+    objective, so that points far off count 0. Where the front is a single point, points that reach it have 1 and any other 0.
+
+    Parameters
+    ----------
+    F : array_like, shape (N, n_obj), or None
+        The points, such as ``F`` of a `TradeOffSet`; None, as pymoo has it, for none.
+    front : array_like, shape (K, n_obj)
+        What they are measured against, such as ``problem.pareto_front()``.
+
+    Returns
+    -------
+    float
+        0 to 1 if the front is the whole Pareto front; 0 without points.
+
+    Raises
+    ------
+    GridPathError
+        If the arrays are not rows of as many finite numbers, or the front has no points.
+
+    See Also
+    --------
+    ReferenceFront : Measures many sets of points against one front.
+
+    Examples
+    --------
+    >>> front = [[10, 5], [11, 3], [14, 1]]
+    >>> hypervolume_ratio(front, front)
+    1.0
+    >>> round(hypervolume_ratio([[11, 3]], front), 3)
+    0.872
+    """
+    points, reference = _pair(F, front)
+    return reference.hypervolume_ratio(points)
+
+
+def igd_plus(F: Any, front: Any) -> float:
+    """Return the mean distance by which points of a front are missed, in objectives that are normalised by its range.
+
+    Parameters
+    ----------
+    F, front
+        As for `hypervolume_ratio`.
+
+    Returns
+    -------
+    float
+        0 where every point of the front is reached; ``inf`` without points, where pymoo and moocore say 0.
+
+    Raises
+    ------
+    GridPathError
+        As `hypervolume_ratio`.
+
+    References
+    ----------
+    Ishibuchi, Masuda, Tanigaki and Nojima (2015), Modified distance calculation in generational distance and inverted
+    generational distance.
+
+    Examples
+    --------
+    >>> round(igd_plus([[11, 3]], [[10, 5], [11, 3], [14, 1]]), 3)
+    0.25
+    """
+    points, reference = _pair(F, front)
+    return reference.igd_plus(points)
+
+
+def share_found(F: Any, front: Any) -> float:
+    """Return the share of a front's points that are among the points, but for rounding (`SAME` of each objective's size).
+
+    Parameters
+    ----------
+    F, front
+        As for `hypervolume_ratio`.
+
+    Returns
+    -------
+    float
+        0 to 1.
+
+    Raises
+    ------
+    GridPathError
+        As `hypervolume_ratio`.
+
+    Examples
+    --------
+    >>> share_found([[10, 5], [12, 3]], [[10, 5], [11, 3]])
+    0.5
+    """
+    points, reference = _pair(F, front)
+    return reference.share_found(points)
+
+
+def _pair(F: Any, front: Any) -> tuple[np.ndarray, ReferenceFront]:
+    """Return points and the front that they are measured against, checked."""
+    expected = "rows of finite numbers, one an objective"
+    points = checks.array("front", front, (None, None), expected=expected, finite=True).astype(float)
+    if not points.size:
+        raise GridPathError(f"front has shape {points.shape}, expected one point or more to measure against")
+    if F is None:
+        return np.empty((0, points.shape[1])), ReferenceFront(points)
+    given = checks.array("F", F, expected=expected, finite=True).astype(float)
+    # pymoo returns the objectives of a single solution as one row.
+    given = given.reshape(1, -1) if given.ndim == 1 and given.size else given
+    if not given.size:
+        given = given.reshape(0, points.shape[1])
+    if given.ndim != 2 or given.shape[1] != points.shape[1]:
+        raise GridPathError(f"F has shape {given.shape}, expected rows of {points.shape[1]} numbers, as the front has")
+    return given, ReferenceFront(points)
+
+
 def merge_fronts(fronts: list[np.ndarray]) -> np.ndarray:
     """Return the non-dominated points of several fronts, each once, in lexicographic order.
 
@@ -202,36 +331,3 @@ def _volumes(F: np.ndarray, first: np.ndarray, last: np.ndarray, n_records: int,
         if len(front):
             values[i] = moocore.hypervolume(front, ref=corner)
     return np.repeat(values, np.diff(np.append(begins, n_records)))
-
-
-def first_reaching(ratios: np.ndarray, target: float) -> int | None:
-    """Return the first record whose ratio is at least the target, None if there is none."""
-    reached = np.flatnonzero(ratios >= target)
-    return int(reached[0]) if len(reached) else None
-
-
-def quartiles(values: np.ndarray, axis: int = 0) -> np.ndarray:
-    """Return lower quartile, median and upper quartile, interpolated linearly; values may be infinite.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        Without NaN; ``inf`` stands for something that was not reached and makes infinite what lies between it and a number.
-    axis : int, default 0
-
-    Returns
-    -------
-    numpy.ndarray, shape (3, ...)
-        NaN if there are no values.
-    """
-    values = np.sort(np.moveaxis(np.asarray(values, dtype=float), axis, 0), axis=0)
-    if not len(values):
-        return np.full((3, *values.shape[1:]), np.nan)
-    places = np.array([0.25, 0.5, 0.75]) * (len(values) - 1)
-    below = np.floor(places).astype(int)
-    above = np.ceil(places).astype(int)
-    low, high = values[below], values[above]
-    weight = (places - below).reshape(3, *[1] * (values.ndim - 1))
-    with np.errstate(invalid="ignore"):
-        between = low + weight * (high - low)
-    return np.where(weight == 0.0, low, np.where(np.isinf(high), high, between))

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pymoo_gridpath.quality import ReferenceFront, first_reaching, merge_fronts, quartiles
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.quality import ReferenceFront, hypervolume_ratio, igd_plus, merge_fronts, share_found
 
 FRONT = np.array([[10.0, 5.0], [11.0, 3.0], [14.0, 1.0]])
 
@@ -146,24 +147,35 @@ def test_merged_fronts_hold_each_point_once_whatever_the_rounding():
     assert merge_fronts([np.empty((0, 2))]).shape == (0, 2)
 
 
-@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=12))
-def test_quartiles_are_those_of_numpy(values):
-    expected = np.quantile(values, [0.25, 0.5, 0.75])
-    assert quartiles(np.array(values)) == pytest.approx(expected, rel=1e-9, abs=1e-6)
+def test_an_objective_that_is_zero_throughout_does_not_overflow():
+    reference = ReferenceFront(np.array([[5.0, 0.0], [6.0, 0.0]]))
+    assert reference.share_found(np.array([[5.0, 0.0], [7.0, 900.0]])) == 1.0
+    assert not reference.exceeded_by(np.array([[7.0, 900.0]]))
 
 
-def test_quartiles_of_infinite_values_are_no_nan():
-    inf = math.inf
-    assert quartiles(np.array([1.0, inf, 2.0, 3.0, inf])).tolist() == [2.0, 3.0, inf]
-    assert quartiles(np.array([1.0, inf])).tolist() == [inf, inf, inf]
-    assert quartiles(np.array([1.0, 1.0, 1.0, inf])).tolist()[:2] == [1.0, 1.0]
-    assert quartiles(np.full(4, inf)).tolist() == [inf] * 3
-    assert np.isnan(quartiles(np.empty(0))).all()
-    table = quartiles(np.array([[1.0, inf], [3.0, inf]]))
-    assert table[1].tolist() == [2.0, inf]
+@pytest.mark.parametrize("n_obj", [2, 3])
+def test_the_functions_are_the_definitions(n_obj):
+    rng = np.random.default_rng(n_obj)
+    front = random_front(rng, 9, n_obj)
+    F = np.concatenate([front[::2], front[1:2] + 0.1])
+    span = np.ptp(front, axis=0)
+    missed = [min(np.linalg.norm(np.maximum(f - z, 0.0) / span) for f in F) for z in front]
+    assert hypervolume_ratio(F.tolist(), front) == pytest.approx(defined_ratio(F, front), abs=1e-9)
+    assert igd_plus(F, front) == pytest.approx(np.mean(missed))
+    assert share_found(F, front) == pytest.approx(sum((f == z).all() for z in front for f in F) / len(front))
 
 
-def test_the_first_record_that_reaches_the_target_counts():
-    assert first_reaching(np.array([0.1, 0.6, 0.4, 0.9]), 0.5) == 1
-    assert first_reaching(np.array([0.1, 0.5]), 0.5) == 1
-    assert first_reaching(np.array([0.1]), 0.5) is None
+def test_the_functions_take_what_pymoo_returns_and_refuse_what_is_no_front():
+    assert (hypervolume_ratio(None, FRONT), igd_plus(None, FRONT), share_found([], FRONT)) == (0.0, math.inf, 0.0)
+    assert share_found(FRONT[0], FRONT) == pytest.approx(1 / 3)
+    for measure in (hypervolume_ratio, igd_plus, share_found):
+        for F, front, message in (
+            (FRONT, [], "front"),
+            (FRONT, None, "front"),
+            (FRONT, FRONT[0], "front"),
+            (FRONT[:, :1], FRONT, "F has shape"),
+            ([[math.nan, 1.0]], FRONT, "F "),
+            ("x", FRONT, "F is 'x'"),
+        ):
+            with pytest.raises(GridPathError, match=message):
+                measure(F, front)

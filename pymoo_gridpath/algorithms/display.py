@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import moocore
-import numpy as np
 from pymoo.util.display.column import Column
 from pymoo.util.display.output import Output
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.problems.members import Members
+from pymoo_gridpath.quality import ReferenceFront
 
 
 class PathOutput(Output):
@@ -54,28 +54,15 @@ class PathOutput(Output):
             self.columns.append(self.length)
         front = problem.pareto_front() if self.distance else None
         if front is not None and len(front):
-            span = np.ptp(front, axis=0)
-            self._scale = np.where(span > 0, span, 1.0)
-            self._front = front / self._scale
+            self._front = ReferenceFront(front)
             self.columns.append(self.igd_plus)
 
     def update(self, algorithm: Any) -> None:
         super().update(algorithm)
-        F = _legal(algorithm)
+        members = Members(algorithm)
+        F = members.F
         self.legal.set(len(F))
         if self.length in self.columns:
-            least = F[:, algorithm.problem.objective_names.index("length")].min(initial=np.inf)
-            self.length.set(f"{least:.3f}" if len(F) else None)
+            self.length.set(f"{members.least('length'):.3f}" if len(F) else None)
         if self.igd_plus in self.columns:
-            self.igd_plus.set(f"{moocore.igd_plus(F / self._scale, ref=self._front):.6f}" if len(F) else None)
-
-
-def _legal(algorithm: Any) -> np.ndarray:
-    """Return the objectives of the legal members of a population, shape (N, n_obj); they carry no penalty."""
-    pop, problem = algorithm.pop, algorithm.problem
-    if not len(pop):
-        return np.empty((0, problem.n_obj))
-    legal = np.asarray(pop.get("interfering_cells")) == 0
-    if problem.has_constraints():
-        legal &= pop.get("CV")[:, 0] <= 0
-    return pop.get("F")[legal]
+            self.igd_plus.set(f"{self._front.igd_plus(F):.6f}" if len(F) else None)

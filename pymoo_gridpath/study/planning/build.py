@@ -20,6 +20,9 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+from pymoo_gridpath.representations import Representation, make_representation
+from pymoo_gridpath.study.specification import own
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, OBJECTIVE, REPRESENTATION
 from pymoo_gridpath.study.specification.operators import make_operator
 
 # Problems that a process keeps, since many runs share one.
@@ -91,13 +94,26 @@ def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> Grid
     key = json.dumps(problem, sort_keys=True)
     made = _problems.get(key)
     if made is None:
-        settings = {name: problem[name] for name in ("representation", "objectives", "obstacles", "potential_limit", "axis")}
-        cells = build_grid(problem["grid"], grid)
-        made = GridPathProblem(cells, problem["start"], problem["goal"], penalty=problem["penalty"], **settings)
+        settings = {name: problem[name] for name in ("obstacles", "penalty", "potential_limit")}
+        cells, query = build_grid(problem["grid"], grid), (problem["start"], problem["goal"])
+        objectives = [one if isinstance(one, str) else own.make(one, OBJECTIVE) for one in problem["objectives"]]
+        representation, axis = problem["representation"], problem["axis"]
+        if not isinstance(representation, str):
+            representation, axis = build_representation(representation, cells, *query, axis), "auto"
+        made = GridPathProblem(cells, *query, representation, objectives, axis=axis, **settings)
         _problems[key] = made
         while len(_problems) > KEPT_PROBLEMS:
             _problems.popitem(last=False)
     return made
+
+
+def build_representation(content: Any, grid: OccupancyGrid, start, goal, axis: Any) -> Representation:
+    """Return a representation in canonical form for a query on a grid."""
+    if isinstance(content, str):
+        return make_representation(content, grid, start, goal, axis)
+    if not content["monotone"] and axis != "auto":
+        raise GridPathError(f"axis is {axis!r}, but paths of {own.shown(content)} advance along none; expected 'auto'")
+    return own.make(content, REPRESENTATION, grid, start, goal, **({"axis": axis} if content["monotone"] else {}))
 
 
 def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> Algorithm:
@@ -124,6 +140,8 @@ def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> A
             potential_limit=problem.potential_limit,
         )
         return setup.algorithm
+    if not isinstance(algorithm["algorithm"], str):
+        return _own_algorithm(algorithm, problem)
     if algorithm["algorithm"] == "exact":
         return ExactFront(max_seconds=algorithm["max_seconds"], max_labels=algorithm["max_labels"])
     return make_algorithm(
@@ -134,6 +152,21 @@ def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> A
         operators=_operators(algorithm["operators"], problem),
         **algorithm["parameters"],
     )
+
+
+def _own_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> Algorithm:
+    """Return an algorithm that is none of this package or pymoo, with what its constructor takes of a study's settings."""
+    from pymoo_gridpath.algorithms import reference_directions
+
+    options = dict(algorithm["parameters"])
+    if "pop_size" in algorithm:
+        options["pop_size"] = algorithm["pop_size"]
+    if "operators" in algorithm:
+        options |= _operators(algorithm["operators"], problem)
+    needed = own.parameters_of(own.class_of(algorithm["algorithm"], ALGORITHM)).get("ref_dirs")
+    if needed is not None and needed.default is needed.empty and "ref_dirs" not in options:
+        options["ref_dirs"] = reference_directions(problem.n_obj, options.get("pop_size", 100))
+    return own.make(algorithm["algorithm"], ALGORITHM, **options)
 
 
 def _operators(specs: Mapping[str, Any], problem: GridPathProblem) -> dict[str, Any]:

@@ -10,8 +10,8 @@ from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.problems.grid_path import DEFAULT_PENALTY
-from pymoo_gridpath.representations import REPRESENTATIONS
-from pymoo_gridpath.study.specification.operators import SLOTS, default_operator
+from pymoo_gridpath.study.specification.kinds import SLOTS, is_monotone, is_of_paper, objective_name
+from pymoo_gridpath.study.specification.operators import default_operator
 
 DEFAULT_POP_SIZE = 100
 PRESET_POP_SIZE = 500
@@ -65,12 +65,12 @@ def resolve(
     if "preset" in algorithm:
         return _overridden(problem, _preset_overrides(problem, overrides)), dict(algorithm)
     changed = _overridden(problem, overrides)
-    if algorithm["algorithm"] == "exact":
-        return changed, dict(algorithm)
     settled = dict(algorithm)
-    if settled["smoothness"] is None:
-        settled["smoothness"] = CAPABILITIES[settled["algorithm"]].smoothness and "turn" not in changed["objectives"]
-    settled["operators"] = _resolved_operators(settled["operators"], settled["algorithm"], changed["representation"])
+    if "smoothness" in settled and settled["smoothness"] is None:
+        turns = "turn" in map(objective_name, changed["objectives"])
+        settled["smoothness"] = CAPABILITIES[settled["algorithm"]].smoothness and not turns
+    if "operators" in settled:
+        settled["operators"] = _resolved_operators(settled["operators"], settled["algorithm"], changed["representation"])
     return changed, settled
 
 
@@ -79,7 +79,7 @@ def _overridden(problem: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     if overrides.get("obstacles", problem["obstacles"]) != problem["obstacles"]:
         # They belong to the handling that is given up.
         changed |= {"penalty": None, "potential_limit": None}
-    if "representation" in overrides and not REPRESENTATIONS[overrides["representation"]].monotone:
+    if "representation" in overrides and not is_monotone(overrides["representation"]):
         changed["axis"] = "auto"
     return settle(changed | dict(overrides))
 
@@ -87,7 +87,7 @@ def _overridden(problem: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
 def _preset_overrides(problem: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the paper's planner changes in a problem, see `ahmed_deb_2013`."""
     brought: dict[str, Any] = {}
-    if not REPRESENTATIONS[problem["representation"]].paper:
+    if not is_of_paper(problem["representation"]):
         brought["representation"] = "integer"
     if len(problem["objectives"]) == 1 and problem["obstacles"] == "penalty":
         brought["obstacles"] = "constraint"
@@ -96,17 +96,22 @@ def _preset_overrides(problem: Mapping[str, Any], overrides: Mapping[str, Any]) 
     return brought | dict(overrides)
 
 
-def _resolved_operators(given: Mapping[str, Any], algorithm: str, representation: str) -> dict[str, Any]:
+def _resolved_operators(given: Mapping[str, Any], algorithm: Any, representation: Any) -> dict[str, Any]:
     """Return every operator of an algorithm on problems of a representation; "paper" where `paper_operators` decides."""
     base = given["base"]
     if base == "default":
-        base = "paper" if REPRESENTATIONS[representation].paper else "scalarized"
-    # Differential evolution makes its children itself.
-    slots = list(SLOTS) if CAPABILITIES[algorithm].operators or given["base"] != "default" else ["sampling", "repair"]
+        base = "paper" if is_of_paper(representation) else "scalarized"
+    if not isinstance(algorithm, str):
+        slots = algorithm["slots"]
+    else:
+        # Differential evolution makes its children itself.
+        slots = list(SLOTS) if CAPABILITIES[algorithm].operators or given["base"] != "default" else ["sampling", "repair"]
     names: dict[str, str] = dict(_PATH)
+    named = isinstance(representation, str)
     if base == "random":
         names["sampling"] = "ReachableSampling"
     elif base == "paper":
-        names = {**_PAPER, "crossover": _PAPER_CROSSOVERS.get(representation, "DiscreteSBX")}
+        # Of a coding of one's own, the problem decides.
+        names = {**_PAPER, "crossover": _PAPER_CROSSOVERS.get(representation, "DiscreteSBX")} if named else {}
     found: dict[str, Any] = {slot: dict(default_operator(names[slot], slot)) if slot in names else "paper" for slot in slots}
     return found | {slot: dict(value) for slot, value in given.items() if slot != "base"}

@@ -10,7 +10,7 @@ from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
-from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, Task, is_exact, needed_for
+from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, Task, has_own_budget, needed_for
 
 # Share of the time of a measurement that getting ready for it may take: compiled functions are loaded in the first one.
 _LEAST_SLICE = 0.2
@@ -96,7 +96,7 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     """Return the seconds that a run will take, and whether that is but a bound for an exact front."""
     begin = working_seconds()
     problem = build_problem(task.problem, task.grid)
-    if is_exact(task.algorithm):
+    if has_own_budget(task.algorithm):
         return _measure_exact(task.algorithm, problem, max_seconds)
     assert task.budget is not None
     algorithm: Any = build_algorithm(task.algorithm, problem)

@@ -10,13 +10,23 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import CAPABILITIES
-from pymoo_gridpath.representations import REPRESENTATIONS, make_representation
 from pymoo_gridpath.study.planning import canonical
-from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem
-from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedProblem, PlannedRun, is_exact, run_key
+from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_representation
+from pymoo_gridpath.study.planning.plan import (
+    Plan,
+    PlannedAlgorithm,
+    PlannedProblem,
+    PlannedRun,
+    has_own_budget,
+    is_deterministic,
+    run_key,
+)
 from pymoo_gridpath.study.planning.planned_problems import place_of, plan_problems, refuse
 from pymoo_gridpath.study.planning.trial import Pair, one_of_each_kind, run_briefly
+from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
+from pymoo_gridpath.study.specification.kinds import algorithm_entry, is_monotone, representation_entry
+from pymoo_gridpath.study.specification.operators import operator_entry
 from pymoo_gridpath.study.specification.study import Study
 
 #: Runs that a study may have.
@@ -56,7 +66,7 @@ def plan_study(study: Study) -> Plan:
     problems, groups = plan_problems(study)
     reference = None if study.reference is False else {"algorithm": "exact", **study.reference}
     algorithms = [_algorithm(spec, reference) for spec in study.algorithms]
-    n_runs = sum(1 if is_exact(algorithm.spec) else len(study.seeds) for algorithm in algorithms) * len(problems)
+    n_runs = sum(1 if is_deterministic(algorithm.spec) else len(study.seeds) for algorithm in algorithms) * len(problems)
     if n_runs > MAX_RUNS:
         raise study.error(f"the study has {n_runs:,} runs, expected at most {MAX_RUNS:,}", ("seeds",))
     _check_pairs(study, problems, groups, algorithms)
@@ -77,15 +87,29 @@ def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> Plan
         content = {"algorithm": "exact", "max_seconds": spec.max_seconds, "max_labels": spec.max_labels}
         if spec.max_seconds is None and spec.max_labels is None and reference is not None:
             content = dict(reference)
+    elif own.is_path(spec.algorithm):
+        entry = algorithm_entry(spec.algorithm)
+        content = {"algorithm": entry, "parameters": spec.parameters}
+        if entry["pop_size"]:
+            content["pop_size"] = spec.pop_size or canonical.DEFAULT_POP_SIZE
+        if entry["slots"]:
+            content["operators"] = _operators(spec.operators)
     else:
         content = {
             "algorithm": spec.algorithm,
             "pop_size": spec.pop_size or canonical.DEFAULT_POP_SIZE,
             "smoothness": spec.smoothness,
-            "operators": spec.operators,
+            "operators": _operators(spec.operators),
             "parameters": spec.parameters,
         }
-    return PlannedAlgorithm(spec.label, content, spec.overrides)
+    overrides = dict(spec.overrides)
+    if "representation" in overrides:
+        overrides["representation"] = representation_entry(overrides["representation"])
+    return PlannedAlgorithm(spec.label, content, overrides)
+
+
+def _operators(given: Mapping[str, Any]) -> dict[str, Any]:
+    return {slot: value if slot == "base" else operator_entry(slot, value) for slot, value in given.items()}
 
 
 def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[PlannedAlgorithm]) -> None:
@@ -97,8 +121,8 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
         about = f"problem {planned.label!r}: "
         refuse(study, place_of(group), about, build_problem, planned.spec, planned.grid)
         members = [problems[k] for k in range(len(problems)) if groups[k] == group]
-        checked = {planned.spec["representation"]}
-        if REPRESENTATIONS[planned.spec["representation"]].monotone:
+        checked = [planned.spec["representation"]]
+        if is_monotone(planned.spec["representation"]):
             _check_advancing(study, place_of(group), members, planned.spec)
         for k, algorithm in enumerate(algorithms):
             where, about = ("algorithms", k), f"{algorithm.label!r} does not suit the problem {planned.label!r}: "
@@ -110,10 +134,10 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
             made = refuse(study, where, about, build_algorithm, settled, problem)
             _check_parameters(study, k, made, problem.n_obj, settled)
             _check_promises(study, k, problem, settled, made)
-            if not is_exact(settled):
+            if not has_own_budget(settled):
                 pairs.append(Pair(content, settled, planned.grid, planned.label, k))
-            if REPRESENTATIONS[content["representation"]].monotone and content["representation"] not in checked:
-                checked.add(content["representation"])
+            if content["representation"] not in checked and is_monotone(content["representation"]):
+                checked.append(content["representation"])
                 _check_advancing(study, where, members, content)
     for pair in one_of_each_kind(pairs):
         about = f"{algorithms[pair.index].label!r} fails on the problem {pair.label!r}: "
@@ -132,7 +156,7 @@ def _check_advancing(study: Study, where, members: list[PlannedProblem], content
             grid = build_grid(planned.spec["grid"])
         start, goal = planned.spec["start"], planned.spec["goal"]
         about = f"problem {planned.label!r}: "
-        refuse(study, where, about, make_representation, content["representation"], grid, start, goal, content["axis"])
+        refuse(study, where, about, build_representation, content["representation"], grid, start, goal, content["axis"])
 
 
 def _check_parameters(study: Study, k: int, made: Any, n_obj: int, algorithm: Mapping[str, Any]) -> None:
@@ -157,7 +181,8 @@ def _check_parameters(study: Study, k: int, made: Any, n_obj: int, algorithm: Ma
 
 def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any], made: Any) -> None:
     """Refuse what would run, but not as a study promises."""
-    row = CAPABILITIES.get(algorithm.get("algorithm", ""))
+    name = algorithm.get("algorithm")
+    row = CAPABILITIES.get(name) if isinstance(name, str) else None
     if row is not None and problem.has_constraints() and not row.reproducible_constrained:
         raise study.error(
             f"{row.name} gives another result each time on problems with constraints, whatever the seed; "
@@ -165,7 +190,7 @@ def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any],
             ("algorithms", k),
         )
     most = study.budget.get("evaluations")
-    if most is not None and not is_exact(algorithm) and most < made.pop_size:
+    if most is not None and "pop_size" in algorithm and most < made.pop_size:
         raise study.error(
             f"pop_size is {made.pop_size}, expected at most the {most} evaluations of the budget",
             ("algorithms", k, "pop_size"),
@@ -182,9 +207,9 @@ def _runs(study: Study, problems: list[PlannedProblem], algorithms: list[Planned
     for i, problem in enumerate(problems):
         for j, algorithm in enumerate(algorithms):
             content, settled = canonical.resolve(problem.spec, algorithm.spec, algorithm.overrides)
-            exact = is_exact(settled)
-            for seed in (0,) if exact else study.seeds:
-                run = PlannedRun(run_key(content, settled, None if exact else study.budget, seed), i, j, seed)
+            budget = None if has_own_budget(settled) else study.budget
+            for seed in (0,) if is_deterministic(settled) else study.seeds:
+                run = PlannedRun(run_key(content, settled, budget, seed), i, j, seed)
                 if run.key in seen:
                     raise _twins(study, problems, algorithms, seen[run.key], run)
                 seen[run.key] = run

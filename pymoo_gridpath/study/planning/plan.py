@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 from pymoo_gridpath.memory import needed
 from pymoo_gridpath.study.planning.canonical import n_cells, resolve
 from pymoo_gridpath.study.planning.stored import check_plan
+from pymoo_gridpath.study.specification import own
+from pymoo_gridpath.study.specification.kinds import objective_name
 
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
 SCHEMA = 2
@@ -144,7 +146,7 @@ class Plan:
         else:
             spec, overrides = self.algorithms[run.algorithm].spec, self.algorithms[run.algorithm].overrides
         problem, algorithm = resolve(planned.spec, spec, overrides)
-        budget = None if is_exact(algorithm) else self.budget
+        budget = None if has_own_budget(algorithm) else self.budget
         return Task(run.key, problem, algorithm, budget, run.seed, planned.grid)
 
     def to_json(self) -> dict[str, Any]:
@@ -177,9 +179,24 @@ class Plan:
         )
 
 
-def is_exact(algorithm: Mapping[str, Any]) -> bool:
-    """Whether a canonical algorithm is the exact front, which draws no random number."""
-    return algorithm.get("algorithm") == "exact"
+def has_own_budget(algorithm: Mapping[str, Any]) -> bool:
+    """Whether a canonical algorithm ends by a budget of its own, as the exact front does, and not by the study's."""
+    return "max_seconds" in algorithm
+
+
+def is_deterministic(algorithm: Mapping[str, Any]) -> bool:
+    """Whether a canonical algorithm draws no random number, so that one seed is enough."""
+    return _says(algorithm, "deterministic")
+
+
+def is_truth(algorithm: Mapping[str, Any]) -> bool:
+    """Whether a complete result of a canonical algorithm is what others are measured against."""
+    return _says(algorithm, "reference")
+
+
+def _says(algorithm: Mapping[str, Any], flag: str) -> bool:
+    content = algorithm.get("algorithm")
+    return has_own_budget(algorithm) if isinstance(content, str) or content is None else content[flag]
 
 
 def run_key(problem: Mapping[str, Any], algorithm: Mapping[str, Any], budget: Mapping[str, int] | None, seed: int) -> str:
@@ -205,5 +222,5 @@ def run_key(problem: Mapping[str, Any], algorithm: Mapping[str, Any], budget: Ma
 def needed_for(task: Task) -> str:
     """Return what a run costs in memory, in words."""
     problem = task.problem
-    turn = "turn" in problem["objectives"]
-    return needed(problem["representation"], n_cells(problem["grid"]), is_exact(task.algorithm), turn)
+    turn = "turn" in map(objective_name, problem["objectives"])
+    return needed(own.shown(problem["representation"]), n_cells(problem["grid"]), is_truth(task.algorithm), turn)

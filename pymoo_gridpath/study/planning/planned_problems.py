@@ -17,6 +17,7 @@ from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_grid, pack_grid
 from pymoo_gridpath.study.planning.plan import PlannedProblem, run_key
+from pymoo_gridpath.study.specification.kinds import objective_entry, representation_entry
 from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange
 from pymoo_gridpath.study.specification.study import Study
 
@@ -147,8 +148,8 @@ def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
             "grid": item.grid,
             "start": list(item.start),
             "goal": list(item.goal),
-            "objectives": list(spec.objectives),
-            "representation": spec.representation or default,
+            "objectives": [objective_entry(one) for one in spec.objectives],
+            "representation": default if spec.representation is None else representation_entry(spec.representation),
             "obstacles": spec.obstacles,
             "penalty": spec.penalty,
             "potential_limit": spec.potential_limit,

@@ -75,7 +75,8 @@ def _small(pair: Pair) -> Pair:
         last = _STAND_IN["size"] - 1
         grid = None
         problem |= {"grid": {"random": {**_STAND_IN, "corner_cutting": kept}}, "start": [0, 0], "goal": [last, last]}
-    algorithm["pop_size"] = min(algorithm["pop_size"], _POP_SIZE)
+    if "pop_size" in algorithm:
+        algorithm["pop_size"] = min(algorithm["pop_size"], _POP_SIZE)
     if "n_offsprings" in algorithm.get("parameters", {}):
         few = min(algorithm["parameters"]["n_offsprings"], _POP_SIZE)
         algorithm["parameters"] = {**algorithm["parameters"], "n_offsprings": few}
@@ -90,5 +91,6 @@ def _run(pair: Pair) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of so few members
         algorithm.setup(problem, termination=build_termination({"generations": 2}, algorithm), seed=1)
-        algorithm.next()
-        algorithm.next()
+        for _ in range(2):
+            if algorithm.has_next():
+                algorithm.next()

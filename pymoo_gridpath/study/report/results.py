@@ -14,9 +14,10 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.quality import ReferenceFront, first_reaching, merge_fronts
+from pymoo_gridpath.quality import ReferenceFront, merge_fronts
 from pymoo_gridpath.study.planning.canonical import resolve
-from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, is_exact
+from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, has_own_budget, is_deterministic, is_truth
+from pymoo_gridpath.study.report.statistics.summaries import first_reaching
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
 from pymoo_gridpath.study.running.store import Store, readable
 
@@ -163,9 +164,14 @@ class Results:
         """The labels of the algorithms."""
         return [algorithm.label for algorithm in self.plan.algorithms]
 
-    def is_exact(self, algorithm: int) -> bool:
-        """Whether an algorithm is the exact front, which draws no random number."""
-        return is_exact(self.plan.algorithms[algorithm].spec)
+    def is_deterministic(self, algorithm: int) -> bool:
+        """Whether an algorithm draws no random number, so that it has one run a problem and is not part of the tests."""
+        return is_deterministic(self.plan.algorithms[algorithm].spec)
+
+    @property
+    def random(self) -> list[int]:
+        """The algorithms that draw random numbers, and so have a run for each seed."""
+        return [k for k in range(len(self.algorithms)) if not self.is_deterministic(k)]
 
     def planned(self, algorithm: int, problems: Sequence[int]) -> list[RunResult]:
         """Return the runs of an algorithm on some problems, whatever became of them."""
@@ -267,7 +273,7 @@ def _reference(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | No
     exact, status = records.get(planned.reference or "", (None, "missing"))
     finished = [record for record, status in records.values() if record is not None and status == "finished"]
     fronts = [record.F for record in finished if len(record.F)]
-    whole = [record for record in finished if record.complete and is_exact(record.algorithm)]
+    whole = [record for record in finished if record.complete and is_truth(record.algorithm)]
     if exact not in whole:
         # An exact front among the algorithms serves as well, unless it is that of a problem with overrides.
         same = (record for record in whole if record.problem == resolve(planned.spec, record.algorithm, {})[0])
@@ -301,7 +307,7 @@ def _measure(result: RunResult, record: RunRecord, front: ReferenceFront, target
     result.n_points, result.seconds = len(record.F), record.seconds
     reached = result.ratio >= target
     result.seconds_to_target = record.seconds if reached else math.inf
-    if is_exact(record.algorithm):
+    if has_own_budget(record.algorithm):
         return  # it makes no evaluations
     result.n_eval, result.n_gen, result.n_members = record.n_eval, record.n_gen, record.n_members
     result.evaluations_to_target = record.n_eval if reached else math.inf

@@ -12,15 +12,16 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any
 
-import moocore
 import numpy as np
 from pymoo.core.callback import Callback
 
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
+from pymoo_gridpath.problems.members import Members
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
 from pymoo_gridpath.study.planning.plan import Task, needed_for
 from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
+from pymoo_gridpath.study.specification.kinds import objective_name
 from pymoo_gridpath.versions import versions
 
 #: Most records of a history: beyond that, every second one is dropped, and from then on half as many are made.
@@ -51,7 +52,7 @@ def execute(task: Task) -> bytes:
 
 def failed_run(task: Task, message: str, started: str | None = None, seconds: float = 0.0) -> bytes:
     """Return the bytes of the record of a run that failed."""
-    objectives = [str(name) for name in task.problem.get("objectives", [])]
+    objectives = [objective_name(one) for one in task.problem.get("objectives", [])]
     return to_bytes(
         RunRecord(
             key=task.key,
@@ -154,55 +155,8 @@ def _most_generations(algorithm: Any) -> float:
     most = getattr(algorithm.termination, "n_max_evals", None)
     if most is None:
         return math.inf
-    return _LONGEST[0] * math.ceil(most / max(algorithm.n_offsprings or algorithm.pop_size, 1)) + _LONGEST[1]
-
-
-class Members:
-    """The population of an algorithm.
-
-    Attributes
-    ----------
-    F : numpy.ndarray, shape (n_legal, n_obj)
-        Of those that are legal paths, and so without penalties.
-    turn : numpy.ndarray, shape (n_legal,)
-        Theirs, in degrees.
-    n_legal, n_members : int
-    """
-
-    def __init__(self, algorithm):
-        members = algorithm.pop.tolist()
-        self._legal = _legal(members, algorithm.problem.has_constraints())
-        self.n_members, self.n_legal = len(members), len(self._legal)
-        self.F = np.array([one.F for one in self._legal], dtype=float).reshape(-1, algorithm.problem.n_obj)
-        self.turn = np.array([one.data["turn"] for one in self._legal], dtype=float)
-
-    def front(self) -> np.ndarray:
-        """Return the indices of the non-dominated ones, each point of F once, sorted by the objectives from the first on.
-
-        Of those with the same objectives, it is the one that turns least.
-        """
-        order = np.lexsort((self.turn, *self.F.T[::-1]))
-        F = self.F[order]
-        kept = np.ones(len(F), dtype=bool)
-        if F.shape[1] == 2:
-            # Each has to be better in the second than all before it, which are no worse in the first.
-            kept[1:] = F[1:, 1] < np.minimum.accumulate(F[:-1, 1])
-            return order[kept]
-        kept[1:] = (F[1:] != F[:-1]).any(axis=1)
-        order = order[kept]
-        return order[moocore.is_nondominated(F[kept])] if len(order) else order
-
-    def X(self, indices: np.ndarray, n_var: int) -> np.ndarray:
-        """Return the genes of some of the legal ones."""
-        if not len(indices):
-            return np.empty((0, n_var))
-        return np.array([self._legal[k].X for k in indices])
-
-
-def _legal(individuals: list, constrained: bool) -> list:
-    if not constrained:
-        return [one for one in individuals if not one.data["interfering_cells"]]
-    return [one for one in individuals if not one.data["interfering_cells"] and one.CV[0] <= 0]
+    a_generation = getattr(algorithm, "n_offsprings", None) or getattr(algorithm, "pop_size", None) or 1
+    return _LONGEST[0] * math.ceil(most / a_generation) + _LONGEST[1]
 
 
 class Recorder(Callback):
@@ -224,7 +178,6 @@ class Recorder(Callback):
     def __init__(self, objectives):
         super().__init__()
         self.seconds: list[float] = []
-        self._column = list(objectives).index("length") if "length" in objectives else None
         self._counts: list[tuple[int, int, int, float]] = []
         self._fronts: list[np.ndarray] = []
         self._n_obj = len(objectives)
@@ -258,11 +211,9 @@ class Recorder(Callback):
     def _record(self, algorithm: Any) -> None:
         seconds = time.perf_counter() - self._begin
         members = Members(algorithm)
-        F = members.F
-        best = np.nan if self._column is None else F[:, self._column].min(initial=np.inf)
         self.seconds.append(seconds)
-        self._counts.append((int(algorithm.evaluator.n_eval), members.n_legal, members.n_members, float(best)))
-        self._fronts.append(F[members.front()])
+        self._counts.append((int(algorithm.evaluator.n_eval), members.n_legal, members.n_members, members.least("length")))
+        self._fronts.append(members.F[members.front()])
         self._recorded = self.generation
 
     def history(self) -> History:

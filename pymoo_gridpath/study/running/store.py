@@ -133,7 +133,7 @@ class Store:
             found.odd.append(self._set_aside(path) if set_aside else path)
         with readable(self.folder):
             present = self._present()
-        for key in checks.names("keys", keys):
+        for key in checks.names("keys", list(keys) if isinstance(keys, Iterator) else keys):
             if key not in present:
                 found.missing.append(key)
                 continue

@@ -9,8 +9,9 @@ from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.study.specification import operators as _operators
-from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, operator_slots
 from pymoo_gridpath.study.specification.parameters import accepted_parameters, parameters
 
 PRESETS = ("ahmed-deb-2013",)
@@ -22,8 +23,10 @@ class AlgorithmSpec:
 
     Parameters
     ----------
-    algorithm : str, optional
-        What `make_algorithm` takes, or "exact".
+    algorithm : str or type, optional
+        What `make_algorithm` takes, or "exact"; or an algorithm of your own: the path of its class,
+        ``"package.module:Class"``, or the class. It is given those of ``pop_size`` and ``operators`` that its constructor
+        takes.
     preset : {"ahmed-deb-2013"}, optional
         In place of ``algorithm``: the planner of the paper, see `ahmed_deb_2013`, with its penalty of 1; it keeps the
         representation of a problem if that is one of the paper's, and takes "integer" otherwise.
@@ -36,7 +39,8 @@ class AlgorithmSpec:
     operators : str or mapping, default "default"
         "default", "paper", "scalarized", "random" (the last two are `path_operators`), or a mapping of ``sampling``,
         ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``, each the name of a class of
-        `pymoo_gridpath.operators` or a mapping of ``class`` and its arguments; ``base`` says where the others come from.
+        `pymoo_gridpath.operators`, the path of a class, a mapping of ``class`` and its arguments, a class or an object;
+        ``base`` says where the others come from.
     parameters : mapping, optional
         Further arguments of the algorithm, such as ``n_neighbors``.
     max_seconds, max_labels : optional
@@ -52,7 +56,7 @@ class AlgorithmSpec:
 
     owner: ClassVar[str] = "an algorithm"
 
-    algorithm: str | None = None
+    algorithm: Any = None
     preset: str | None = None
     name: str | None = None
     pop_size: int | None = None
@@ -61,7 +65,7 @@ class AlgorithmSpec:
     parameters: Any = None
     max_seconds: float | None = None
     max_labels: int | None = None
-    representation: str | None = None
+    representation: Any = None
     obstacles: str | None = None
     penalty: float | None = None
     potential_limit: float | None = None
@@ -79,9 +83,17 @@ class AlgorithmSpec:
         set_given(self, "obstacles", check=lambda value, where: values.choice(value, OBSTACLES, where))
         check_problem_settings(self)
         if self.algorithm is not None:
-            set_fields(self, algorithm=_operators.algorithm_name(values.text(self.algorithm, ("algorithm",)), ("algorithm",)))
+            set_fields(self, algorithm=_operators.read_algorithm(self.algorithm, ("algorithm",)))
         self._check_kind()
-        if self.algorithm not in (None, "exact"):
+        if own.is_path(self.algorithm):
+            takes = own.read(self.algorithm, ALGORITHM, ("algorithm",))
+            table = values.table({} if self.parameters is None else self.parameters, ("parameters",))
+            given = own.read({"class": self.algorithm, **table}, ALGORITHM, ("parameters",))
+            set_fields(self, parameters=given.arguments)
+            if operator_slots(takes.cls):
+                set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
+                self._check_slots(str(self.algorithm))
+        elif self.algorithm not in (None, "exact"):
             set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
             self._check_slots(str(self.algorithm))
             given = {} if self.parameters is None else self.parameters
@@ -90,6 +102,13 @@ class AlgorithmSpec:
     def _check_kind(self) -> None:
         owner = "exact" if self.algorithm == "exact" else "the preset" if self.preset else self.algorithm
         takes = {"exact": ("max_seconds", "max_labels"), "the preset": ("pop_size",)}
+        if own.is_path(owner):
+            cls = own.read(owner, ALGORITHM, ("algorithm",)).cls
+            takes[str(owner)] = (
+                *["pop_size"] * ("pop_size" in own.parameters_of(cls)),
+                *["operators"] * bool(operator_slots(cls)),
+                "parameters",
+            )
         known = takes.get(str(owner), ("pop_size", "smoothness", "operators", "parameters"))
         for key in ("pop_size", "smoothness", "operators", "parameters", "max_seconds", "max_labels"):
             value = getattr(self, key)
@@ -98,8 +117,12 @@ class AlgorithmSpec:
                 raise StudyError(f"{owner} takes no {key}, only {' and '.join(known)}", (key,))
 
     def _check_slots(self, algorithm: str) -> None:
-        accepted = accepted_parameters(algorithm)
-        if not CAPABILITIES[algorithm].operators and self.operators["base"] != "default":
+        if own.is_path(algorithm):
+            cls = own.read(algorithm, ALGORITHM, ("algorithm",)).cls
+            accepted, whole = own.parameters_of(cls), "crossover" in operator_slots(cls)
+        else:
+            accepted, whole = accepted_parameters(algorithm), CAPABILITIES[algorithm].operators
+        if not whole and self.operators["base"] != "default":
             raise StudyError(
                 f"{algorithm} makes children by differential evolution, so that there is no set of operators for it; "
                 f"expected sampling or repair alone, such as {{ sampling = 'ScalarizedSampling' }}",
@@ -113,7 +136,7 @@ class AlgorithmSpec:
     @property
     def label(self) -> str:
         """What tables call it."""
-        return self.name or self.preset or str(self.algorithm)
+        return self.name or self.preset or str(self.algorithm).rpartition(":")[2]
 
     @property
     def overrides(self) -> dict[str, Any]:

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from pymoo_gridpath.errors import StudyError
-from pymoo_gridpath.representations import REPRESENTATIONS
-from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.study.specification import own, values
+from pymoo_gridpath.study.specification.kinds import REPRESENTATION
 from pymoo_gridpath.study.specification.values import Where
 
 AXES = ("auto", "x", "y")
@@ -45,7 +45,7 @@ def set_given(spec: Any, *keys: str, check) -> None:
 
 
 def check_problem_settings(spec: Any) -> None:
-    set_given(spec, "representation", check=lambda value, where: values.choice(value, REPRESENTATIONS, where))
+    set_given(spec, "representation", check=lambda value, where: own.form(own.read(value, REPRESENTATION, where)))
     set_given(spec, "penalty", "potential_limit", check=lambda value, where: values.real(value, where, open_below=True))
     set_given(spec, "axis", check=lambda value, where: values.choice(value, AXES, where))
 

@@ -5,32 +5,21 @@ from __future__ import annotations
 import functools
 import inspect
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from pymoo.core.crossover import Crossover
-from pymoo.core.duplicate import DuplicateElimination
-from pymoo.core.mutation import Mutation
-from pymoo.core.repair import Repair
-from pymoo.core.sampling import Sampling
+from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath import operators as _operators
-from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms import CAPABILITIES, ExactFront
 from pymoo_gridpath.algorithms.factory import _class_of, find_capability
 from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
-from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.study.specification import own, values
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, SLOTS
+from pymoo_gridpath.study.specification.own import Kind
 from pymoo_gridpath.study.specification.values import Where
 
 BASES = ("default", "paper", "scalarized", "random")
-
-#: What `make_algorithm` takes as operators, and what each must be.
-SLOTS: dict[str, type] = {
-    "sampling": Sampling,
-    "crossover": Crossover,
-    "mutation": Mutation,
-    "repair": Repair,
-    "eliminate_duplicates": DuplicateElimination,
-}
 
 # An example of each, for messages.
 _EXAMPLES: dict[str, str] = {
@@ -40,6 +29,29 @@ _EXAMPLES: dict[str, str] = {
     "repair": "PathRepair",
     "eliminate_duplicates": "RowDuplicates",
 }
+
+
+def read_algorithm(value: Any, where: Where) -> str:
+    """Return the name of an algorithm, or the path of the class of one of your own.
+
+    Raises
+    ------
+    StudyError
+        As `algorithm_name`; if there is no such class, or it is an object, whose parts no file can hold.
+    """
+    if isinstance(value, Algorithm):
+        raise StudyError(
+            f"algorithm is an object of {type(value).__name__}, which holds more than its arguments; expected its class, and "
+            "the arguments as pop_size, operators and parameters",
+            where,
+        )
+    if not isinstance(value, type) and not own.is_path(value):
+        return algorithm_name(values.text(value, where), where)
+    given = own.read(value, ALGORITHM, where)
+    if given.cls is ExactFront:
+        return "exact"
+    row = CAPABILITIES.get(given.cls.__name__)
+    return algorithm_name(row.name, where) if row is not None and _class_of(row) is given.cls else given.name
 
 
 def algorithm_name(name: str, where: Where) -> str:
@@ -94,10 +106,19 @@ def operator_classes(slot: str) -> dict[str, type]:
 
 def make_operator(slot: str, spec: Mapping[str, Any]):
     """Return the operator that a canonical entry describes."""
+    if own.is_path(spec["class"]):
+        return own.make(spec, _kind_of(slot))
     return operator_classes(slot)[spec["class"]](**{key: value for key, value in spec.items() if key != "class"})
 
 
 def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
+    named = given.get("class") if isinstance(given, Mapping) else given
+    if (not isinstance(named, str) and named is not None) or own.is_path(named):
+        found = own.read(given, _kind_of(slot), where)
+        if own.is_path(found.name):
+            _try_operator(found.name, lambda: found.cls(**found.arguments), where)
+            return {"class": found.name, **found.arguments}
+        given = {"class": found.name, **found.arguments}
     table = {"class": given} if isinstance(given, str) else values.table(given, where)
     if "class" not in table:
         raise StudyError(f"{slot} has no class, expected such as {{ class = {_EXAMPLES[slot]!r} }}", where)
@@ -115,11 +136,24 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
             raise StudyError(f"{name} has no {key}, expected such as {{ class = {name!r}, {key} = 2 }}", where)
     given = {key: values.like(arguments[key], values.plain_json(value, (*where, key))) for key, value in table.items()}
     spec = {"class": name, **arguments, **given}
+    _try_operator(name, lambda: make_operator(slot, spec), where)
+    return spec
+
+
+def _try_operator(name: str, make: Callable[[], Any], where: Where) -> None:
     try:
-        make_operator(slot, spec)
+        make()
     except (ValueError, TypeError, ArithmeticError) as error:
         raise StudyError(f"{name} cannot be made so: {error}", where) from None
-    return spec
+
+
+def _kind_of(slot: str) -> Kind:
+    return Kind(slot, SLOTS[slot], operator_classes(slot))
+
+
+def operator_entry(slot: str, spec: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a single operator of a study in canonical form."""
+    return own.entry(own.read(spec, _kind_of(slot), (slot,))) if own.is_path(spec["class"]) else dict(spec)
 
 
 def _own_arguments(cls: type) -> dict[str, Any]:

@@ -11,10 +11,11 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import MAX_CELLS
-from pymoo_gridpath.objectives import make_objectives
+from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.problems import OBSTACLES
-from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import AXES, check_problem_settings, make_spec, set_fields, set_given
+from pymoo_gridpath.study.specification.kinds import OBJECTIVE
 
 UNKNOWN = ("free", "occupied")
 
@@ -93,7 +94,8 @@ class ProblemSpec:
     resolution, unknown, threshold, corner_cutting : optional
         How the map is read, see `pymoo_gridpath.maps.load_map`.
     objectives, representation, obstacles, penalty, potential_limit, axis : optional
-        See `GridPathProblem`.
+        See `GridPathProblem`. An objective or the representation may be of your own: the path of its class,
+        ``"package.module:Class"``, a table of ``class`` and its arguments, the class, or an objective itself.
 
     Raises
     ------
@@ -117,7 +119,7 @@ class ProblemSpec:
     threshold: float | None = None
     corner_cutting: bool | None = None
     objectives: Any = ("length", "vulnerability")
-    representation: str | None = None
+    representation: Any = None
     obstacles: str = "penalty"
     penalty: float | None = None
     potential_limit: float | None = None
@@ -186,17 +188,28 @@ class ProblemSpec:
         return Path(source.removesuffix(".scen")).stem
 
 
-def _objectives(value: Any) -> tuple[str, ...]:
+def _objectives(value: Any) -> tuple[Any, ...]:
+    """Return objectives by name, by the path of their class, or as tables of class and arguments."""
+    where = ("objectives",)
     try:
-        names: list[Any] = [value] if isinstance(value, str) else checks.items("objectives", value, "names")
+        items = [value] if isinstance(value, str | type | Objective) else checks.items("objectives", value, "names")
     except GridPathError:
-        names = [None]
-    if not all(isinstance(name, str) for name in names):
-        raise StudyError(f"objectives is {values.show(value)}, expected a list of names", ("objectives",))
+        items = [None]
+    if not all(isinstance(item, str | type | Mapping | Objective) for item in items):
+        raise StudyError(f"objectives is {values.show(value)}, expected a list of names", where)
     try:
-        return tuple(objective.name for objective in make_objectives(names))
-    except GridPathError as error:
-        raise StudyError(str(error), ("objectives",)) from None
+        given = [own.read(item, OBJECTIVE, where) for item in items if not _is_name(item)]
+        made = iter([item.cls(**item.arguments) for item in given])
+        make_objectives([item if _is_name(item) else next(made) for item in items])
+    except StudyError:
+        raise
+    except (GridPathError, TypeError) as error:
+        raise StudyError(str(error), where) from None
+    return tuple(own.form(own.read(item, OBJECTIVE, where)) for item in items)
+
+
+def _is_name(value: Any) -> bool:
+    return isinstance(value, str) and not own.is_path(value)
 
 
 def _queries(value: Any) -> tuple[int, ...] | QueryRange | None:

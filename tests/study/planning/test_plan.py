@@ -20,7 +20,7 @@ from pymoo_gridpath.problems import GridPathProblem
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_grid, build_problem
 from pymoo_gridpath.study.planning.expand import plan_study
-from pymoo_gridpath.study.planning.plan import Plan, is_exact
+from pymoo_gridpath.study.planning.plan import Plan, has_own_budget
 from pymoo_gridpath.study.specification.operators import make_operator
 from pymoo_gridpath.study.specification.study import AlgorithmSpec, ProblemSpec, Study
 from pymoo_gridpath.study.specification.toml_file import load_study
@@ -80,7 +80,7 @@ def test_tasks_are_self_contained():
         assert pickle.loads(pickle.dumps(task)) == task
         assert len(pickle.dumps(task)) < 4000
         assert task.key == run.key
-        assert (task.budget is None) == is_exact(task.algorithm)
+        assert (task.budget is None) == has_own_budget(task.algorithm)
         problem = build_problem(task.problem, task.grid)
         assert isinstance(problem, GridPathProblem)
     warehouse = build_grid(plan.problems[3].spec["grid"], plan.problems[3].grid)

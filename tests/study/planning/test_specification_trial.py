@@ -16,7 +16,7 @@ from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.planning import trial
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
 from pymoo_gridpath.study.planning.expand import plan_study
-from pymoo_gridpath.study.planning.plan import is_exact
+from pymoo_gridpath.study.planning.plan import is_truth
 from pymoo_gridpath.study.running.execute import execute
 from pymoo_gridpath.study.running.record import from_bytes
 from pymoo_gridpath.study.specification import parameters as further
@@ -202,7 +202,7 @@ def test_nothing_that_the_capability_table_allows_is_refused(representation, obs
         if row.max_objectives is None and not (constrained and not (row.constraints and row.reproducible_constrained))
     ]
     for few in (algorithms, [{**item, "pop_size": 20} for item in algorithms]):
-        assert not any(is_exact(item.spec) for item in plan_of(few, problem).algorithms)
+        assert not any(is_truth(item.spec) for item in plan_of(few, problem).algorithms)
 
 
 def test_a_population_that_others_decide_is_not_given_too():

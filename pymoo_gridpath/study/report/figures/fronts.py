@@ -12,10 +12,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from pymoo_gridpath.objectives import OBJECTIVES
 from pymoo_gridpath.quality import SAME, ReferenceFront, merge_fronts
 from pymoo_gridpath.study.report.figures.style import REFERENCE, AlgorithmStyle, legend_above, panel_figure, panel_title
 from pymoo_gridpath.study.report.results import Results
+from pymoo_gridpath.study.specification.kinds import objective_label
 
 # Lines of attainment surfaces, which differ in grey print too.
 _BENEATH: dict[str, Any] = {"color": "#bcc0c6", "linewidth": 2.8, "solid_joinstyle": "miter"}
@@ -126,7 +126,7 @@ def _fronts(results: Results, problem: int) -> dict[int, list[np.ndarray]]:
     fronts = {}
     for k in range(len(results.algorithms)):
         found = [run.F for run in results.finished(k, [problem]) if run.F is not None]
-        if any(len(front) for front in found) and not results.is_exact(k):
+        if any(len(front) for front in found) and not results.is_deterministic(k):
             fronts[k] = found
     return fronts
 
@@ -167,7 +167,7 @@ def _height(front: np.ndarray, x: np.ndarray, top: float) -> np.ndarray:
 
 def _finish(results: Results, problem: int, figure: Figure, axes, low: np.ndarray, high: np.ndarray) -> None:
     names = results.plan.problems[problem].spec["objectives"][:2]
-    labels = [OBJECTIVES[name].label if name in OBJECTIVES else name for name in names]
+    labels = [objective_label(name) for name in names]
     for ax in axes:
         ax.set_xlim(low[0], high[0])
         ax.set_ylim(low[1], high[1])

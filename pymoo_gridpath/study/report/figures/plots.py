@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from pymoo_gridpath.quality import quartiles
 from pymoo_gridpath.study.report.figures.stretched_axis import stretch, stretch_unit
 from pymoo_gridpath.study.report.figures.style import (
     REFERENCE,
@@ -22,6 +21,7 @@ from pymoo_gridpath.study.report.figures.style import (
 )
 from pymoo_gridpath.study.report.results import Curve, Results
 from pymoo_gridpath.study.report.statistics.significance import ALPHA, Friedman, cliques
+from pymoo_gridpath.study.report.statistics.summaries import quartiles
 
 # Numbers of evaluations at which bands are drawn.
 _STEPS = 121

@@ -42,7 +42,7 @@ class Contents:
         self.results = results
         self.times = times
         labels = results.algorithms
-        self.styles: list[AlgorithmStyle] = algorithm_styles(labels, [results.is_exact(k) for k in range(len(labels))])
+        self.styles: list[AlgorithmStyle] = algorithm_styles(labels, [results.is_deterministic(k) for k in range(len(labels))])
         self.families: list[Family] = []
 
     def blocks(self) -> Iterator[Block]:
@@ -130,7 +130,7 @@ class Contents:
             f"{against}. Runs without a legal path attain nothing; where there are some, titles count the others."
         )
         n_obj = len(results.plan.problems[problems[0]].spec["objectives"])
-        random = any(results.finished(k, problems[:1]) for k in range(len(results.algorithms)) if not results.is_exact(k))
+        random = any(results.finished(k, problems[:1]) for k in results.random)
         nobody = "no run has a legal path" if random else "only exact fronts have finished runs"
         why = nobody if n_obj == 2 else f"they are drawn for two objectives, and it has {n_obj}"
         draw = partial(plot_attainment, results, problems[0], self.styles)

@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from pymoo_gridpath.quality import quartiles
 from pymoo_gridpath.study.planning.canonical import resolve
 from pymoo_gridpath.study.planning.plan import PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.page.blocks import Block, Fold, Heading, Listing, Text
 from pymoo_gridpath.study.report.results import Results
+from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.summary import reference_phrase
 from pymoo_gridpath.study.report.tables.table import NOTHING, Table, count, significant, spread
+from pymoo_gridpath.study.specification import own
+from pymoo_gridpath.study.specification.kinds import is_of_paper
 from pymoo_gridpath.study.specification.operators import operator_classes
 
 # Rows of the list of single problems.
@@ -32,7 +34,7 @@ def settings_blocks(results: Results, times: bool) -> Iterator[Block]:
     """Yield what the runs have in common, the tables of problems and algorithms, and the study file if there is one."""
     plan = results.plan
     (kind, amount), *_ = plan.budget.items()
-    seeds = sorted({run.seed for run in results.runs if not results.is_exact(run.algorithm)})
+    seeds = sorted({run.seed for run in results.runs if not results.is_deterministic(run.algorithm)})
     yield Heading("Settings")
     words = f"Budget of each run: {amount} {kind}. Seeds: {_ranges(seeds)}. Target: hypervolume ratio {results.target:g}."
     if plan.reference is not None:
@@ -55,7 +57,7 @@ def _groups_table(results: Results) -> Table:
         queries = {_query(spec) for spec in specs}
         query = queries.pop() if len(queries) == 1 else f"{len(queries)} different"
         row = [group, str(len(problems)), _grids([results.plan.problems[k] for k in problems]), query]
-        rows.append([*row, ", ".join(specs[0]["objectives"]), _representation(specs[0]), _obstacles(specs[0])])
+        rows.append([*row, ", ".join(map(own.shown, specs[0]["objectives"])), _representation(specs[0]), _obstacles(specs[0])])
     notes = ["A query goes from cell x,y to another, counted from 0,0 at the bottom left."]
     if any("digest" in problem.spec["grid"] for problem in results.plan.problems):
         notes.append(
@@ -98,7 +100,7 @@ def _algorithms_table(results: Results) -> Table:
         spec = algorithm.spec
         in_groups = zip(*(_in_problem(problem, algorithm) for problem in firsts), strict=True)
         operators, ties, changes = (_by_group(list(results.groups), texts) for texts in in_groups)
-        method = spec["algorithm"] if "algorithm" in spec else f"{spec['preset']} (preset)"
+        method = own.shown(spec["algorithm"]) if "algorithm" in spec else f"{spec['preset']} (preset)"
         rows.append([str(k + 1), algorithm.label, method, _population(results, k), operators, ties, _other(spec), changes])
     notes = [
         "Ties by turn: whether paths that are otherwise equal are told apart by their total turn. Parameters that are not "
@@ -123,14 +125,14 @@ def _in_problem(problem: dict[str, Any], algorithm: PlannedAlgorithm) -> tuple[s
     if "preset" in settled:
         # As `ahmed_deb_2013` has it.
         return _OPERATORS["paper"][0], "yes" if len(problem["objectives"]) == 2 else "no", changes
-    if settled["algorithm"] == "exact":
+    if "operators" not in settled:
         return NOTHING, NOTHING, changes
     base = algorithm.spec["operators"]["base"]
     _, plain = resolve(problem, {**algorithm.spec, "operators": {"base": base}}, algorithm.overrides)
     if base == "default":
-        base = "paper" if plain["operators"]["sampling"]["class"] == "RandomSampling" else "scalarized"
+        base = "paper" if is_of_paper(changed["representation"]) else "scalarized"
     words = _operators(base, plain["operators"], settled["operators"])
-    return words, "yes" if settled["smoothness"] else "no", changes
+    return words, "yes" if settled.get("smoothness") else "no", changes
 
 
 def _operators(base: str, plain: Mapping[str, Any], settled: Mapping[str, Any]) -> str:
@@ -151,9 +153,11 @@ def _operators(base: str, plain: Mapping[str, Any], settled: Mapping[str, Any]) 
 
 def _operator(slot: str, single: Mapping[str, Any]) -> str:
     """Return a single operator with the arguments that are not its class's defaults."""
+    kind = "duplicates" if slot == "eliminate_duplicates" else slot
+    if own.is_path(single["class"]):
+        return f"{kind} {own.shown(single)}"
     parameters = inspect.signature(operator_classes(slot)[single["class"]]).parameters
     arguments = {key: value for key, value in single.items() if key != "class" and value != parameters[key].default}
-    kind = "duplicates" if slot == "eliminate_duplicates" else slot
     return f"{kind} {single['class']}{f' ({_listed(arguments)})' if arguments else ''}"
 
 
@@ -206,7 +210,8 @@ def _one_grid(problem: PlannedProblem) -> str:
 
 
 def _representation(spec: Mapping[str, Any]) -> str:
-    return spec["representation"] if spec["axis"] == "auto" else f"{spec['representation']} along {spec['axis']}"
+    name = own.shown(spec["representation"])
+    return name if spec["axis"] == "auto" else f"{name} along {spec['axis']}"
 
 
 def _obstacles(spec: Mapping[str, Any]) -> str:

@@ -133,7 +133,7 @@ def compare(results: Results, problems: Sequence[int], measure: str) -> Comparis
     problems : sequence of int
     measure : {"ratio", "igd_plus", "turn"}
     """
-    random = [k for k in range(len(results.algorithms)) if not results.is_exact(k)]
+    random = results.random
     compared = [k for k in random if results.finished(k, problems)]
     comparison = Comparison(measure, "seeds" if len(problems) == 1 else "problems", compared)
     left_out = [results.algorithms[k] for k in random if k not in compared]
@@ -154,7 +154,7 @@ def compare_each(results: Results, problems: Sequence[int], measure: str) -> lis
     """Compare the algorithms on each of several problems by their runs, with one correction for all problems and pairs."""
     each = []
     for problem in problems:
-        compared = [k for k in range(len(results.algorithms)) if not results.is_exact(k) and results.finished(k, [problem])]
+        compared = [k for k in results.random if results.finished(k, [problem])]
         each.append(Comparison(measure, "seeds", compared))
         if len(compared) > 1:
             _compare_runs(each[-1], results, problem)

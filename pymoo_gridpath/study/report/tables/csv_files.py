@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pymoo_gridpath.quality import quartiles
 from pymoo_gridpath.study.planning.plan import PlannedProblem
 from pymoo_gridpath.study.report.results import Results, gist
 from pymoo_gridpath.study.report.statistics.comparisons import Comparison, could_tell
+from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.summary import n_reached
 from pymoo_gridpath.study.report.tables.table import csv_text
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pymoo_gridpath.quality import quartiles
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.statistics.comparisons import TESTED, Comparison
 from pymoo_gridpath.study.report.statistics.significance import ALPHA
+from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.table import (
     NOTHING,
     Table,

@@ -1,0 +1,69 @@
+"""Which members of a population are legal paths, and the front of these."""
+
+from __future__ import annotations
+
+import moocore
+import numpy as np
+
+
+class Members:
+    """The members of an algorithm's population that are legal paths.
+
+    Legal is what crosses no obstacle and, where the problem has constraints, violates none: the rule for all that records or
+    shows how a search gets on.
+
+    Parameters
+    ----------
+    algorithm : pymoo.core.algorithm.Algorithm
+        With an evaluated population of a `GridPathProblem`.
+
+    Attributes
+    ----------
+    F : numpy.ndarray, shape (n_legal, n_obj)
+        Of those that are legal paths, and so without penalties.
+    turn : numpy.ndarray, shape (n_legal,)
+        Theirs, in degrees.
+    n_legal, n_members : int
+    """
+
+    def __init__(self, algorithm):
+        members = algorithm.pop.tolist()
+        self._names = algorithm.problem.objective_names
+        self._legal = _legal(members, algorithm.problem.has_constraints())
+        self.n_members, self.n_legal = len(members), len(self._legal)
+        self.F = np.array([one.F for one in self._legal], dtype=float).reshape(-1, algorithm.problem.n_obj)
+        self.turn = np.array([one.data["turn"] for one in self._legal], dtype=float)
+
+    def front(self) -> np.ndarray:
+        """Return the indices of the non-dominated ones, each point of F once, sorted by the objectives from the first on.
+
+        Of those with the same objectives, it is the one that turns least.
+        """
+        order = np.lexsort((self.turn, *self.F.T[::-1]))
+        F = self.F[order]
+        kept = np.ones(len(F), dtype=bool)
+        if F.shape[1] == 2:
+            # Each has to be better in the second than all before it, which are no worse in the first.
+            kept[1:] = F[1:, 1] < np.minimum.accumulate(F[:-1, 1])
+            return order[kept]
+        kept[1:] = (F[1:] != F[:-1]).any(axis=1)
+        order = order[kept]
+        return order[moocore.is_nondominated(F[kept])] if len(order) else order
+
+    def least(self, objective: str) -> float:
+        """Return the least value of an objective among the legal ones, ``inf`` without any, NaN if the problem has no such."""
+        if objective not in self._names:
+            return np.nan
+        return float(self.F[:, self._names.index(objective)].min(initial=np.inf))
+
+    def X(self, indices: np.ndarray, n_var: int) -> np.ndarray:
+        """Return the genes of some of the legal ones."""
+        if not len(indices):
+            return np.empty((0, n_var))
+        return np.array([self._legal[k].X for k in indices])
+
+
+def _legal(individuals: list, constrained: bool) -> list:
+    if not constrained:
+        return [one for one in individuals if not one.data["interfering_cells"]]
+    return [one for one in individuals if not one.data["interfering_cells"] and one.CV[0] <= 0]

@@ -1,0 +1,104 @@
+"""The kinds of things that a study may bring along, and what has to be known of each without importing it."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from typing import Any
+
+from pymoo.core.algorithm import Algorithm
+from pymoo.core.crossover import Crossover
+from pymoo.core.duplicate import DuplicateElimination
+from pymoo.core.mutation import Mutation
+from pymoo.core.repair import Repair
+from pymoo.core.sampling import Sampling
+
+from pymoo_gridpath.objectives import OBJECTIVES, Objective
+from pymoo_gridpath.representations import REPRESENTATIONS, MonotoneRepresentation, Representation
+from pymoo_gridpath.study.specification import own
+from pymoo_gridpath.study.specification.own import Kind
+
+OBJECTIVE = Kind("objective", Objective, OBJECTIVES)
+REPRESENTATION = Kind("representation", Representation, REPRESENTATIONS)
+ALGORITHM = Kind("algorithm", Algorithm, {})
+
+#: What `make_algorithm` takes as operators, and what each must be.
+SLOTS: dict[str, type] = {
+    "sampling": Sampling,
+    "crossover": Crossover,
+    "mutation": Mutation,
+    "repair": Repair,
+    "eliminate_duplicates": DuplicateElimination,
+}
+
+
+def objective_entry(form: Any) -> Any:
+    """Return an objective of a study in canonical form; one that has a name in this package alone keeps that."""
+    given = own.read(form, OBJECTIVE, ("objectives",))
+    made = given.cls(**given.arguments)
+    content = own.entry(given, label=made.label)
+    return content if isinstance(content, str) else {**content, "name": made.name}
+
+
+def objective_name(content: Any) -> str:
+    """Return the name of an objective in canonical form."""
+    return content if isinstance(content, str) else content["name"]
+
+
+def objective_label(content: Any) -> str:
+    """Return how figures call an objective in canonical form, with its unit."""
+    return _of_package(Objective)[content].label if isinstance(content, str) else content["label"]
+
+
+def representation_entry(form: Any) -> Any:
+    """Return a representation of a study in canonical form."""
+    given = own.read(form, REPRESENTATION, ("representation",))
+    return own.entry(given, monotone=_is_monotone(given.cls), paper=_is_of_paper(given.cls))
+
+
+def is_monotone(content: Any) -> bool:
+    """Whether paths of a representation in canonical form advance along an axis."""
+    return _is_monotone(_of_package(Representation)[content]) if isinstance(content, str) else content["monotone"]
+
+
+def is_of_paper(content: Any) -> bool:
+    """Whether the default operators of a representation in canonical form are those of the paper."""
+    return _is_of_paper(_of_package(Representation)[content]) if isinstance(content, str) else content["paper"]
+
+
+@functools.cache
+def _of_package(base: Any) -> dict[str, Any]:
+    """Return the classes of this package by name, for those who read what was stored: a registry may import others."""
+    found, queue = {}, [base]
+    while queue:
+        cls = queue.pop()
+        queue += cls.__subclasses__()
+        if cls.__module__.startswith("pymoo_gridpath.") and not inspect.isabstract(cls):
+            found[cls.name] = cls
+    return found
+
+
+def _is_monotone(cls: type) -> bool:
+    return issubclass(cls, MonotoneRepresentation)
+
+
+def _is_of_paper(cls: type) -> bool:
+    return issubclass(cls, MonotoneRepresentation)
+
+
+def operator_slots(cls: type) -> list[str]:
+    """Return which operators the constructor of an algorithm takes."""
+    takes = own.parameters_of(cls)
+    return [slot for slot in SLOTS if slot in takes]
+
+
+def algorithm_entry(path: str) -> dict[str, Any]:
+    """Return an algorithm of one's own in canonical form.
+
+    Its class attributes ``deterministic`` and ``reference``, or those of its ``capability``, say whether one run of it is
+    enough, and whether that is the truth which others are measured against.
+    """
+    given = own.read(path, ALGORITHM, ("algorithm",))
+    says = getattr(given.cls, "capability", given.cls)
+    facts = {flag: bool(getattr(says, flag, False)) for flag in ("deterministic", "reference")}
+    return own.entry(given, slots=operator_slots(given.cls), pop_size="pop_size" in own.parameters_of(given.cls), **facts)

@@ -1,0 +1,275 @@
+"""Objectives, representations, operators and algorithms of one's own in studies."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import json
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.objectives import Vulnerability
+from pymoo_gridpath.operators import DiscreteSBX, paper_operators
+from pymoo_gridpath.operators.parameters import number
+from pymoo_gridpath.representations import IntegerRepresentation
+from pymoo_gridpath.study import LocalProcesses, Store, Study, load_study, plan_study, run_study
+from pymoo_gridpath.study.planning.build import build_algorithm, build_problem
+
+MODULE = """
+import os
+import numpy as np
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo_gridpath.objectives import Objective
+from pymoo_gridpath.operators import DiscreteSBX
+from pymoo_gridpath.representations import IntegerRepresentation
+
+class Hilly(Objective):
+    name = "hilly"
+    label = "Height passed [m]"
+    def __init__(self, slope=1.0):
+        self.slope = slope
+    def field(self, grid):
+        return self.slope * np.add.outer(np.zeros(grid.height), np.arange(grid.width) % 3.0)
+    def __call__(self, paths, sums):
+        return paths.total(sums)
+
+class Mine(IntegerRepresentation):
+    name = "mine"
+
+class Sbx(DiscreteSBX):
+    def __init__(self, eta=7.0, **kwargs):
+        super().__init__(eta=eta, **kwargs)
+
+class Greedy(NSGA2):
+    def __init__(self, pop_size=100, strength=1.0, **kwargs):
+        self.strength = strength
+        super().__init__(pop_size=pop_size, **kwargs)
+
+class Once(NSGA2):
+    deterministic = True
+
+class Hidden(Objective):
+    name = "hidden"
+    def __init__(self, secret=object()):
+        self.secret = secret
+    def __call__(self, paths, sums):
+        return paths.length
+"""
+
+STUDY = """
+seeds = 2
+budget = { generations = 3 }
+reference = false
+
+[[problems]]
+name = "hills"
+random = { size = 8, p0 = 0.2 }
+objectives = ["length", { class = "hikers:Hilly", slope = 2.5 }]
+representation = "integer"
+
+[[algorithms]]
+name = "mine"
+algorithm = "NSGA2"
+pop_size = 10
+representation = "hikers:Mine"
+operators = { crossover = { class = "hikers:Sbx", eta = 3 } }
+
+[[algorithms]]
+algorithm = "hikers:Greedy"
+pop_size = 12
+parameters = { strength = 2 }
+
+[[algorithms]]
+algorithm = "hikers:Once"
+pop_size = 14
+"""
+
+
+@pytest.fixture
+def hikers(tmp_path, monkeypatch):
+    (tmp_path / "hikers.py").write_text(MODULE)
+    (tmp_path / "study.toml").write_text(STUDY)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "hikers", raising=False)
+    yield importlib.import_module("hikers")
+    sys.modules.pop("hikers", None)
+
+
+def planned(algorithm=None, problem=None, **others):
+    """Return the plan of a study of one problem and one algorithm."""
+    problem = {"random": {"size": 8, "p0": 0.2}, "representation": "integer"} | (problem or {})
+    algorithm = {"algorithm": "NSGA2", "pop_size": 10} | (algorithm or {})
+    data = {"problems": [problem], "algorithms": [algorithm], "seeds": 1, "budget": {"generations": 2}, "reference": False}
+    return plan_study(Study.from_dict(data | others))
+
+
+def built(plan, k=-1):
+    task = plan.task(plan.runs[k])
+    problem = build_problem(task.problem, task.grid)
+    return problem, build_algorithm(task.algorithm, problem)
+
+
+def test_things_of_a_file_are_what_runs_are_made_of(hikers, tmp_path):
+    plan = plan_study(load_study(tmp_path / "study.toml"))
+    # One run of what draws nothing.
+    assert [sum(run.algorithm == k for run in plan.runs) for k in range(3)] == [2, 2, 1]
+    assert [algorithm.label for algorithm in plan.algorithms] == ["mine", "Greedy", "Once"]
+    problem, algorithm = built(plan, 0)
+    assert type(problem.representation) is hikers.Mine
+    assert type(problem.objectives[1]) is hikers.Hilly and problem.objectives[1].slope == 2.5
+    assert type(algorithm.mating.crossover) is hikers.Sbx and number(algorithm.mating.crossover.eta) == 3
+    _, greedy = built(plan, 2)
+    assert (type(greedy), greedy.pop_size, greedy.strength) == (hikers.Greedy, 12, 2)
+    crossover = paper_operators(problem)["crossover"]
+    assert type(greedy.mating.crossover) is type(crossover)
+
+
+def test_processes_and_the_report_of_a_process_that_has_none_of_it(hikers, tmp_path):
+    with LocalProcesses(2) as executor:
+        outcome = run_study(load_study(tmp_path / "study.toml"), tmp_path / "out", executor)
+    assert (outcome.n_run, outcome.n_failed) == (5, 0)
+    plan = Store(tmp_path / "out").read_plan()
+    record = Store(tmp_path / "out").read(plan.runs[0].key)
+    assert record.objectives == ["length", "hilly"]
+    # The report imports nothing that a plan names, even where it can: this one would end it.
+    (tmp_path / "hikers.py").write_text("raise SystemExit('imported')")
+    code = f"from pymoo_gridpath.study import write_report; write_report({str(tmp_path / 'out')!r}, formats=['svg'])"
+    code += "; import sys; assert 'hikers' not in sys.modules"
+    subprocess.run([sys.executable, "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r}); {code}"], check=True)
+    text = (tmp_path / "out" / "report" / "report.md").read_text()
+    for words in ("Hilly(slope=2.5)", "Greedy", "crossover Sbx(eta=3.0)", "representation Mine"):
+        assert words in text.replace("\\", ""), words
+    assert b"Height passed" in (tmp_path / "out" / "report" / "figures" / "fronts-hills.svg").read_bytes() or True
+
+
+def test_what_a_worker_cannot_import_is_said_in_its_record(hikers, tmp_path):
+    plan = plan_study(load_study(tmp_path / "study.toml"))
+    run = plan.runs[0]
+    plan = dataclasses.replace(plan, runs=(run,))
+    code = textwrap.dedent(
+        f"""
+        import pickle, sys
+        from pymoo_gridpath.study.running.execute import execute
+        sys.stdout.buffer.write(execute(pickle.loads({__import__("pickle").dumps(plan.task(run))!r})))
+        """
+    )
+    from pymoo_gridpath.study.running.record import from_bytes
+
+    answer = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True).stdout
+    record = from_bytes(answer)
+    assert record.status == "failed"
+    last = record.message.strip().splitlines()[-1]
+    assert "the objective hikers:Hilly cannot be imported in this process (ModuleNotFoundError" in last
+    assert "install its package" in last
+
+
+def test_other_code_is_another_run_and_refused_by_workers_that_have_it(hikers, tmp_path, monkeypatch):
+    plan = plan_study(load_study(tmp_path / "study.toml"))
+    (tmp_path / "hikers.py").write_text(MODULE + "\n# changed\n")
+    del sys.modules["hikers"]
+    importlib.invalidate_caches()
+    changed = plan_study(load_study(tmp_path / "study.toml"))
+    assert not {run.key for run in plan.runs} & {run.key for run in changed.runs}
+    code = f"""
+import pickle, sys
+sys.path.insert(0, {str(tmp_path)!r})
+from pymoo_gridpath.study.running.execute import execute
+from pymoo_gridpath.study.running.record import from_bytes
+print(from_bytes(execute(pickle.loads({__import__("pickle").dumps(plan.task(plan.runs[0]))!r}))).message)
+"""
+    out = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
+    assert "with which the study was planned" in out.strip().splitlines()[-1]
+
+
+def test_arguments_are_part_of_the_key(hikers):
+    keys = {
+        planned(problem={"objectives": ["length", {"class": "hikers:Hilly", "slope": slope}]}).runs[0].key
+        for slope in (1.0, 2.0, 2)
+    }
+    assert len(keys) == 2
+
+
+def test_python_takes_classes_and_objects(hikers):
+    by_path = planned(
+        {"algorithm": "hikers:Greedy", "operators": {"crossover": {"class": "hikers:Sbx", "eta": 3.0}}},
+        {"objectives": ["length", {"class": "hikers:Hilly", "slope": 2.0}], "representation": "hikers:Mine"},
+    )
+    by_object = planned(
+        {"algorithm": hikers.Greedy, "operators": {"crossover": hikers.Sbx(eta=3.0)}},
+        {"objectives": ["length", hikers.Hilly(2.0)], "representation": hikers.Mine},
+    )
+    assert [run.key for run in by_path.runs] == [run.key for run in by_object.runs]
+    # What has a name in the package is known by it, as before.
+    plain = planned({"operators": {"crossover": "DiscreteSBX"}}, {"objectives": ["length", "vulnerability"]})
+    named = planned(
+        {"operators": {"crossover": DiscreteSBX()}},
+        {"objectives": ["length", Vulnerability()], "representation": IntegerRepresentation},
+    )
+    assert [run.key for run in plain.runs] == [run.key for run in named.runs]
+    wide = planned(problem={"objectives": ["length", Vulnerability(variance=2.0)]})
+    problem, _ = built(wide)
+    assert problem.objectives[1].variance == 2.0
+    assert wide.runs[0].key != plain.runs[0].key
+
+
+def test_a_study_with_things_of_ones_own_goes_into_a_file_and_back(hikers):
+    study = Study.from_dict(
+        {
+            "problems": [{"random": {"size": 8, "p0": 0.2}, "objectives": ["length", hikers.Hilly(2.0)]}],
+            "algorithms": [
+                {"algorithm": hikers.Greedy, "representation": hikers.Mine, "operators": {"mutation": "PathMutation"}}
+            ],
+            "seeds": 1,
+            "budget": {"generations": 2},
+        }
+    )
+    tables = study.to_dict()
+    assert tables["problems"][0]["objectives"] == ["length", {"class": "hikers:Hilly", "slope": 2.0}]
+    assert Study.from_dict(json.loads(json.dumps(tables))) == study
+
+
+def local_class():
+    class Local(Vulnerability):
+        name = "local"
+
+    return Local
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "problem", "message"),
+    [
+        ({}, {"objectives": ["length", "nowhere:Thing"]}, "the objective nowhere:Thing cannot be imported in this process"),
+        ({}, {"objectives": ["length", "hikers:Nothing"]}, "AttributeError"),
+        ({}, {"objectives": ["length", "hikers:Sbx"]}, "expected a class derived from Objective"),
+        ({}, {"objectives": ["length", "os:getcwd"]}, "expected a class derived from Objective"),
+        ({}, {"objectives": ["length", "a b:c"]}, "expected such as 'package.module:Class'"),
+        ({}, {"objectives": ["length", "__main__:X"]}, "of a script, which no other process can import"),
+        ({}, {"objectives": ["length", local_class()]}, "which no other process can import"),
+        ({}, {"objectives": ["length", {"class": "hikers:Hilly", "slop": 1}]}, "did you mean 'slope'"),
+        ({}, {"objectives": ["length", {"slope": 1}]}, "objective has no class"),
+        ({}, {"representation": "hikers:Hilly"}, "expected a class derived from Representation"),
+        ({"operators": {"crossover": "hikers:Mine"}}, {}, "expected a class derived from Crossover"),
+        ({"operators": {"crossover": {"class": "hikers:Sbx", "eta": -3}}}, {}, "cannot be made so"),
+        ({"algorithm": "hikers:Hilly"}, {}, "expected a class derived from Algorithm"),
+        ({"algorithm": "hikers:Greedy", "parameters": {"strengh": 1}}, {}, "did you mean 'strength'"),
+        ({"algorithm": "hikers:Greedy", "smoothness": True}, {}, "takes no smoothness"),
+    ],
+)
+def test_what_cannot_be_had_is_refused_in_a_sentence(hikers, algorithm, problem, message):
+    with pytest.raises(StudyError) as error:
+        planned(algorithm, problem)
+    assert message in str(error.value) and "\n" not in str(error.value)
+
+
+def test_objects_that_cannot_be_written_down_are_refused(hikers):
+    changed = hikers.Hilly()
+    changed.more = 3
+    for thing in (hikers.Hidden(secret=object()), changed):
+        with pytest.raises(StudyError, match="cannot be written down as a class and its arguments"):
+            planned(problem={"objectives": ["length", thing]})
+    with pytest.raises(StudyError, match="expected its class, and the arguments"):
+        planned({"algorithm": hikers.Greedy()})
