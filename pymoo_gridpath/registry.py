@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
 
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridPathError, nearest
 
 T = TypeVar("T")
@@ -100,12 +101,12 @@ class Registry(Generic[T]):
             Or `error`, if there is none, with the nearest, or an entry point cannot be loaded.
         """
         if not isinstance(name, str):
-            raise self._error(f"there is no {self.kind} {name!r}; expected one of {', '.join(self)}")
+            raise self._error(f"there is no {self.kind} {shown(name)}; expected one of {', '.join(self)}")
         key = self._key(name)
         if key not in self._known and key in self._installed:
             self._load(key)
         if key not in self._known:
-            raise self._error(f"there is no {self.kind} {name!r}; {nearest(name, self)}")
+            raise self._error(f"there is no {self.kind} {shown(name)}; {nearest(name, self)}")
         return self._known[key]
 
     def __contains__(self, name: object) -> bool:

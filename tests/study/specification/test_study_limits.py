@@ -8,6 +8,7 @@ import tomllib
 import pytest
 
 from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.specification import toml_file
 from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.study.specification.toml_file import load_study
@@ -72,7 +73,7 @@ def test_names_and_keys_of_any_length_and_letters_are_shown_on_one_short_line(ta
 def test_maps_whose_names_no_file_can_have_are_refused(tmp_path, key, name):
     data = tomllib.loads(PLAIN) | {"problems": [{"map": "paper16"} | {key: name}]}
     with pytest.raises(StudyError) as error:
-        Study.from_dict(data, folder=tmp_path).plan()
+        plan_study(Study.from_dict(data, folder=tmp_path))
     assert is_sentence(str(error.value)), str(error.value)
 
 
