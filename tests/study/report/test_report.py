@@ -152,7 +152,7 @@ def test_tests_are_those_of_scipy_on_the_rows_of_runs(report):
 def test_wrong_arguments_are_refused(store, tmp_path):
     with pytest.raises(GridPathError, match="format 'jpg'"):
         write_report(store.folder, output=tmp_path / "out", formats=("jpg",))
-    with pytest.raises(GridPathError, match="target is 0, expected a hypervolume ratio"):
+    with pytest.raises(GridPathError, match="target is 0, expected a share above 0, at most 1"):
         write_report(store.folder, output=tmp_path / "out", target=0)
     assert not (tmp_path / "out").exists()
     (tmp_path / "file").write_text("", encoding="utf-8")

@@ -200,7 +200,7 @@ def test_default_operators_are_those_of_the_representation(tmp_path):
 def test_single_operators_are_named_with_the_arguments_that_are_no_defaults(tmp_path):
     splice = {"class": "SpliceCrossover", "reach": 6, "prob": 0.9}
     given = [
-        ("NSGA2", {"base": "paper", "crossover": {"class": "PointCrossover", "n_points": 3}, "mutation": "BitwiseMutation"}),
+        ("NSGA2", {"base": "paper", "crossover": {"class": "PointCrossover", "n_points": 3}, "mutation": "PathMutation"}),
         ("NSGA2", {"base": "random", "sampling": {"class": "ScalarizedSampling", "noise": 0.25}, "crossover": splice}),
         ("NSGA2", {"base": "scalarized", "mutation": {"class": "PathMutation", "margin": 16}}),
         ("GDE3", {"sampling": "ReachableSampling"}),
@@ -210,7 +210,7 @@ def test_single_operators_are_named_with_the_arguments_that_are_no_defaults(tmp_
     problem = ProblemSpec(random={"size": 8, "p0": 0.2}, representation="integer")
     rows = tables_of(tmp_path, study_of(algorithms, problems=[problem]))["algorithms"]
     assert [row["operators"] for row in rows] == [
-        "as in Ahmed and Deb (2013), but with crossover PointCrossover (n_points 3) and mutation BitwiseMutation",
+        "as in Ahmed and Deb (2013), but with crossover PointCrossover (n_points 3) and mutation PathMutation",
         "path-aware, but with sampling ScalarizedSampling (noise 0.25) and crossover SpliceCrossover (reach 6)",
         "path-aware, from scalarized paths",
         "repair as in Ahmed and Deb (2013), sampling ReachableSampling",

@@ -88,7 +88,7 @@ def test_no_process_is_started_for_nothing(plan, done):
 
 @pytest.mark.parametrize("number", [0, -1])
 def test_the_number_of_processes_is_checked(number):
-    with pytest.raises(GridPathError, match=f"the number of processes is {number}, expected at least 1"):
+    with pytest.raises(GridPathError, match=f"the number of processes is {number}, expected a whole number of at least 1"):
         LocalProcesses(number)
 
 
