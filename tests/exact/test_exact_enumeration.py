@@ -102,7 +102,8 @@ def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
         problem = make_problem(case, ("length",))
         sets, fields = objectives_of(problem.grid, seed)
         measures = scores(enumerate_paths(problem.grid, problem.start, problem.goal, headings_of(problem)), fields)
-        for objectives in sets:
+        # Half of them, the others on the next grid.
+        for objectives in sets[seed % 2 :: 2]:
             problem = make_problem(case, objectives)
             found, expected = exact_front(problem), front_of(measures, problem.objective_names)
             assert found.complete
@@ -130,11 +131,13 @@ def test_the_front_of_rows_that_are_too_short_equals_enumeration(solvable_seeds)
         paths = enumerate_paths(grid, tuple(start), tuple(goal), range(8))
         measures = scores(paths, {})
         least = measures["cells"][int(np.argmin(measures["length"]))]
-        for max_cells in (least, least + 1, least + 3):
+        for number, max_cells in enumerate((least, least + 1, least + 3)):
             few = [path for path in paths if len(path[0]) <= max_cells]
             short = scores(few, fields)
             coding = CellSequence(grid, start, goal, max_cells=max_cells)
-            for objectives in [*sets, ("turn",), ("vulnerability",), (sets[2][1], sets[3][1], "turn")]:
+            more = [*sets, ("turn",), ("vulnerability",), (sets[2][1], sets[3][1], "turn")]
+            # A third of them for each length, another third on the next grid.
+            for objectives in more[(seed + number) % 3 :: 3]:
                 problem = GridPathProblem(grid, start, goal, coding, objectives)
                 found, expected = exact_front(problem), front_of(short, problem.objective_names)
                 assert found.complete
@@ -164,7 +167,7 @@ def magnitudes(random_state, shape):
 def test_costs_of_any_size_have_every_point_of_the_enumeration(solvable_seeds, part):
     """In exact arithmetic, since doubles cannot tell most of these sums apart."""
     n_points = n_spread = 0
-    for seed in solvable_seeds[part:240:4]:
+    for seed in solvable_seeds[part:120:4]:
         case = random_case(seed)
         random_state = np.random.default_rng(seed)
         wide, other = (Cost(name, magnitudes(random_state, case[0].shape)) for name in ("wide", "other"))
@@ -190,7 +193,7 @@ def test_costs_of_any_size_have_every_point_of_the_enumeration(solvable_seeds, p
             assert (table[:, None] * (1 + 1e-9) >= found.F).all(axis=2).any(axis=1).all(), (seed, problem.objective_names)
             n_points += len(found.F)
             n_spread += (found.F.max(axis=0) / 1e12 > found.F.min(axis=0)).any()
-    assert n_points > 300 and n_spread > 20
+    assert n_points > 150 and n_spread > 10
 
 
 def label_correction(grid, start, goal, headings, fields, names):

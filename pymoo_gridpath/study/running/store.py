@@ -124,8 +124,11 @@ class Store:
         Raises
         ------
         GridPathError
-            If a folder or a file cannot be read, or what is damaged cannot be moved.
+            If the keys are no texts, a folder or a file cannot be read, or what is damaged cannot be moved.
         """
+        if isinstance(keys, str) or not isinstance(keys, Iterable):
+            raise GridPathError(f"keys is {checks.shown(keys)}, expected keys of runs")
+        keys = [checks.text("a key", key) for key in keys]
         found = StoredRuns()
         with readable(self.folder):
             odd = list(self._odd())

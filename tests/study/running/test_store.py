@@ -45,7 +45,7 @@ def test_check_tells_what_is_there(store):
 
 def test_an_empty_folder_has_nothing(tmp_path):
     store = Store(tmp_path / "none")
-    assert store.check(KEYS).missing == KEYS
+    assert store.check(KEYS).missing == store.check(key for key in KEYS).missing == KEYS
     with pytest.raises(GridPathError, match=r"none has no run 0000.*, expected one that was stored"):
         store.read(KEYS[0])
     with pytest.raises(GridPathError, match=r"none has no plan\.json, expected the folder of a study that was run"):
