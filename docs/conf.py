@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import shutil
 from importlib.metadata import version as version_of
 
-from sphinx.util import logging
 from sphinx.util.nodes import make_refnode
 
 project = "pymoo_gridpath"
@@ -59,9 +57,8 @@ html_static_path = ["_static"]
 html_css_files = ["custom.css"]
 html_show_sourcelink = False
 html_copy_source = False
-html_sidebars = {
-    page: [] for page in ("index", "tutorial", "method", "algorithms", "exact", "maps", "command_line", "internals")
-}
+PLAIN_PAGES = ("index", "tutorial", "method", "algorithms", "exact", "maps", "command_line", "internals")
+html_sidebars = {page: [] for page in PLAIN_PAGES}
 html_theme_options = {
     "logo": {"text": "pymoo_gridpath"},
     "show_toc_level": 2,
@@ -71,24 +68,7 @@ html_theme_options = {
     "footer_end": [],
 }
 
-# -- checks and links ------------------------------------------------------------------------------------------------------
-
-PACKAGES = [
-    "pymoo_gridpath",
-    *(
-        f"pymoo_gridpath.{name}"
-        for name in ("algorithms", "decision", "maps", "operators", "plotting", "problems", "representations")
-    ),
-]
-
-
-def check_reference(app, env):
-    """Warn of each public name that the reference leaves out."""
-    documented = {name.rpartition(".")[2] for name in env.get_domain("py").objects}
-    for package in PACKAGES:
-        for name in importlib.import_module(package).__all__:
-            if name not in documented:
-                logging.getLogger(__name__).warning("%s.%s is not in reference.md", package, name)
+# -- links ----------------------------------------------------------------------------------------------------------------
 
 
 def find_by_last_name(app, env, node, contnode):
@@ -120,5 +100,4 @@ def set_up_kernels(app, config):
 def setup(app):
     app.connect("config-inited", clear_stubs)
     app.connect("config-inited", set_up_kernels)
-    app.connect("env-check-consistency", check_reference)
     app.connect("missing-reference", find_by_last_name)

@@ -59,12 +59,13 @@ class MapFormat(ABC):
     ...     name, suffixes = "runs", (".runs",)
     ...
     ...     def read(self, path, corner_cutting=False, resolution=1.0):
+    ...         text = read_string(path, 10**6)
     ...         try:
-    ...             rows = [[int(word) for word in line.split()] for line in read_string(path, 10**6).splitlines()]
+    ...             rows = [[int(word) for word in line.split()] for line in text.splitlines()]
     ...         except ValueError:
     ...             raise MapError(path, "found a word that is no whole number, expected the lengths of runs") from None
     ...         sizes = {sum(row) for row in rows}
-    ...         if len(sizes) != 1 or min(map(min, rows)) < 0:
+    ...         if len(sizes) != 1 or sizes == {0} or min(map(min, rows)) < 0:
     ...             raise MapError(path, "the rows have not all one width, expected runs that add up to it")
     ...         check_size(path, sizes.pop(), len(rows))
     ...         occupied = [[k % 2 for k, run in enumerate(row) for _ in range(run)] for row in reversed(rows)]

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import inspect
+import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -82,7 +85,7 @@ class TestText(MapFormatSuite):
 
 def test_all_formats_are_tested():
     tested = {suite.format for suite in MapFormatSuite.__subclasses__() if suite.__module__ == __name__}
-    assert tested == {NumpyFormat, ImageFormat, MovingAIFormat, RosFormat, TextFormat, Runs}
+    assert tested == {NumpyFormat, ImageFormat, MovingAIFormat, RosFormat, TextFormat, Runs, MAP_FORMATS["rooms"]}
 
 
 # -- a format of someone else's ---------------------------------------------------------------------------------------
@@ -220,6 +223,28 @@ FAULTS = {
         "query": lambda self, path: (q := Runs.query(self, path)) and Query(q.start, q.goal, 100 * q.radius)
     },
 }
+
+
+def _of_the_page():
+    page = Path(__file__).parents[2] / "docs" / "maps.md"
+    cells = re.findall(r"```{code-cell} ipython3\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    (program,) = [cell for cell in cells if "MapFormat" in cell]
+    exec(compile(program.partition("\nwith open(")[0], str(page), "exec"), {"__name__": "docs.maps"})
+    return MAP_FORMATS["rooms"]
+
+
+class TestRooms(MapFormatSuite):
+    """The format that the page on maps shows."""
+
+    format = _of_the_page()
+
+    def write(self, path, grid):
+        self.write_query(path, grid, Query((0, 0), (1, 0)))
+
+    def write_query(self, path, grid, query):
+        walls = [(int(x), int(y), int(x) + 1, int(y) + 1) for y, x in np.argwhere(grid.occupied)]
+        document = {"size": [grid.width, grid.height], "walls": walls, "start": query.start, "goal": query.goal}
+        path.write_text(json.dumps(document))
 
 
 def failures(suite, tmp_path) -> list[str]:
