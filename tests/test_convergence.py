@@ -5,7 +5,6 @@ import pickle
 
 import numpy as np
 import pytest
-import reference
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.core.callback import CallbackCollection
 from pymoo.optimize import minimize
@@ -15,6 +14,7 @@ from pymoo_gridpath.convergence import ConvergenceRecorder, common_reference_poi
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import random_dense_grid
+from pymoo_gridpath.testing import reference
 
 
 def make_problem(size, seed):

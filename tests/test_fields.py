@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 import pytest
-import reference
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pymoo_gridpath.errors import GridError
 from pymoo_gridpath.fields import QUANTUM, clearance, obstacle_potential
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.testing import reference
 
 
 def random_grid(seed, density=0.3):

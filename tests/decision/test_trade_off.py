@@ -6,7 +6,6 @@ import pickle
 
 import numpy as np
 import pytest
-import reference
 from pymoo.core.population import Population
 from pymoo.core.result import Result
 from trade_offs import draw, make_problem, result_of, run
@@ -16,6 +15,7 @@ from pymoo_gridpath.decision import TradeOffSet, load_json
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Objective, Vulnerability
 from pymoo_gridpath.representations import CellSequence
+from pymoo_gridpath.testing import reference
 
 MEASURES = ["length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance"]
 

@@ -4,7 +4,6 @@ import itertools
 
 import numpy as np
 import pytest
-import reference
 from hypothesis import given
 from hypothesis import strategies as st
 from queries import queries, random_genes
@@ -13,6 +12,7 @@ from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths import CellPaths
 from pymoo_gridpath.representations import make_representation
+from pymoo_gridpath.testing import reference
 
 
 @st.composite

@@ -5,7 +5,6 @@ import pickle
 
 import numpy as np
 import pytest
-import reference
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 from queries import SPIRAL
@@ -17,6 +16,7 @@ from pymoo_gridpath.operators import RandomSampling, paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.problems import grid_path as module
 from pymoo_gridpath.representations import CellSequence, make_representation
+from pymoo_gridpath.testing import reference
 
 GRID = random_dense_grid(12, 0.3, 4)
 START, GOAL = (0, 0), (11, 11)

@@ -6,7 +6,6 @@ import pickle
 
 import numpy as np
 import pytest
-import reference
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from queries import SPIRAL, queries, random_genes
@@ -17,6 +16,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators.duplicates import row_keys
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence, make_representation
+from pymoo_gridpath.testing import reference
 
 
 def joined(paths):

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import reference
 from hypothesis import given
 from hypothesis import strategies as st
 from queries import queries, random_genes
@@ -12,6 +11,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.paths.frame import MonotoneFrame
 from pymoo_gridpath.representations import make_representation
+from pymoo_gridpath.testing import reference
 
 NAMES = ["absolute", "binary", "integer", "mixed"]
 

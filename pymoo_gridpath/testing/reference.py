@@ -1,4 +1,4 @@
-"""Plain Python references: paths measured cell by cell, by definition, with no use of the package's arithmetic; and fronts."""
+"""Slow references: paths measured cell by cell, by definition, with no use of the package's arithmetic; and fronts."""
 
 import itertools
 import math
@@ -7,6 +7,7 @@ import numpy as np
 
 
 def length(cells):
+    """Sum of the distances between consecutive cells."""
     return sum(math.dist(a, b) for a, b in itertools.pairwise(cells))
 
 
@@ -40,9 +41,13 @@ def potential(grid, variance=0.5):
     return field
 
 
-def vulnerability(cells, grid, variance=0.5):
-    field = potential(grid, variance)
+def total(cells, field):
+    """Sum of a field, indexed by [y, x], over visited cells."""
     return sum(field[y, x] for x, y in cells)
+
+
+def vulnerability(cells, grid, variance=0.5):
+    return total(cells, potential(grid, variance))
 
 
 def is_connected(cells):
@@ -91,6 +96,30 @@ def broken_cells(cells, grid):
 
 
 # -- fronts ---------------------------------------------------------------------------------------------------------------
+
+
+def is_legal(cells, grid, start, goal):
+    """Whether cells are a path from the start to the goal by steps between free neighbours that cut no forbidden corner."""
+    ends = bool(cells) and tuple(cells[0]) == tuple(start) and tuple(cells[-1]) == tuple(goal)
+    return ends and is_connected(cells) and broken_cells(cells, grid) == 0
+
+
+def walk(grid, start, goal, rng, forward=lambda step: True):
+    """A random shortest path by steps for which ``forward`` holds, as a list of cells (x, y), or None if there is none."""
+    steps = [(dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if (dx or dy) and forward((dx, dy))]
+    before, queue = {tuple(start): None}, [tuple(start)]
+    for cell in queue:
+        for k in rng.permutation(len(steps)):
+            x, y = cell[0] + steps[k][0], cell[1] + steps[k][1]
+            inside = 0 <= x < grid.width and 0 <= y < grid.height
+            if inside and (x, y) not in before and broken_cells([cell, (x, y)], grid) == 0:
+                before[x, y] = cell
+                queue.append((x, y))
+    path, cell = [], tuple(goal) if tuple(goal) in before else None
+    while cell is not None:
+        path.append(cell)
+        cell = before[cell]
+    return path[::-1] or None
 
 
 def dominates(a, b):
