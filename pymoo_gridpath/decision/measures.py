@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pymoo_gridpath.fields import BoxedField
-from pymoo_gridpath.objectives import Vulnerability, boxed_field_of
+from pymoo_gridpath.fields import BoxedField, obstacle_potential
+from pymoo_gridpath.objectives import Vulnerability, boxed_field_of, prepared
 from pymoo_gridpath.representations.base import representation_of
 
 
@@ -15,7 +15,7 @@ class PathMeasures:
     Parameters
     ----------
     problem : GridPathProblem
-        If it minimises a `Vulnerability`, its variance is the one used; else the default.
+        If it minimises a vulnerability, an objective of that name, it is the one used; else the default.
 
     Raises
     ------
@@ -25,21 +25,23 @@ class PathMeasures:
     Attributes
     ----------
     field : numpy.ndarray, shape (height, width) of the representation's box
-        The potential whose sum is the vulnerability.
+        The potential whose sum is the vulnerability; the default one if that is no such sum.
     """
 
     def __init__(self, problem):
         representation_of(problem)
-        given = [objective for objective in problem.objectives if isinstance(objective, Vulnerability)]
+        given = [objective for objective in problem.objectives if objective.name == Vulnerability.name]
         self.problem = problem
         self._objective = given[0] if given else Vulnerability()
-        field = boxed_field_of(self._objective, problem.grid, problem.representation.box)
-        self.field = field.inside if isinstance(field, BoxedField) else field
-        self._sums = problem.representation.prepare(field)
+        box = problem.representation.box
+        field = boxed_field_of(self._objective, problem.grid, box)
+        inside = field.inside if isinstance(field, BoxedField) else field
+        self.field = obstacle_potential(problem.grid, box=box) if inside is None else inside
+        self._prepared = prepared(self._objective, problem.representation, field)
 
     def vulnerability(self, paths) -> np.ndarray:
         """Return the vulnerability of N paths, shape (N,)."""
-        return self._objective(paths, self._sums)
+        return self._objective(paths, self._prepared)
 
     def legal(self, paths) -> np.ndarray:
         """Return which of N paths cross no occupied cell and keep the potential limit if the problem has one, shape (N,)."""

@@ -15,11 +15,10 @@ from pymoo_gridpath.exact.costs import Costs, integer_costs
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import Front, front_of_two
 from pymoo_gridpath.neighbourhood import HEADING_OF
-from pymoo_gridpath.objectives import Length, Turn
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.representations.base import max_cells, representation_of
-from pymoo_gridpath.search import Moves
+from pymoo_gridpath.search import UNREACHABLE, Moves
 
 # Lengths of paths across more cells could overflow.
 _MOST_CELLS = 2**24
@@ -78,7 +77,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     Parameters
     ----------
     problem : GridPathProblem
-        With one to three objectives that add up along a path: length, turn, and sums of a field over the visited cells.
+        With one to three objectives that add up along a path: length, turn, and sums of costs of cells, moves and turns.
     budget : Budget, optional
         What the search may use; by default 70 % of the free memory, and as long as it takes.
 
@@ -91,7 +90,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     CapabilityError
         If there are more than three objectives or one does not add up, see `integer_costs`.
     GridPathError
-        If the problem is no path problem, or a score is not the sum that its field says.
+        If the problem is no path problem, or a score is not the sum of what its objective says.
 
     Examples
     --------
@@ -144,12 +143,6 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
 
 
-def _place(objective) -> int:
-    if type(objective) is Length:
-        return 0
-    return 2 if type(objective) is Turn else 1
-
-
 class _Part(NamedTuple):
     """What a search found.
 
@@ -183,10 +176,9 @@ def _search(
     Where costs have to be rounded, the cheapest paths may lose most of theirs. These visit no cell that costs more than they
     do: a search among the cells that are left has a finer unit, and so on. Sets of cells that were searched are not again.
     """
-    costs = integer_costs(problem.objectives, problem.grid, usable, moves.box)
+    costs = integer_costs(problem.objectives, problem.grid, moves, usable)
     start, goal = moves.index(problem.start), moves.index(problem.goal)
-    # Searches are quickest with the length first, and turns have to come last.
-    order = sorted(range(problem.n_obj), key=lambda k: _place(problem.objectives[k]))
+    order = costs.order
     if most is not None:
         front = _front_of_short_paths(moves, costs.take(order), start, goal, most - 1, meter)
     elif problem.n_obj == 3:
@@ -196,13 +188,16 @@ def _search(
         front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
     points = front.points[:, np.argsort(order)] + costs.field[:, start]
     lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
-    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.rounded, costs.rounded)]
-    finer = [_cells_of_cheap(points[:, k], costs.field[k], usable) for k in np.flatnonzero(costs.rounded)]
+    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.off, costs.rounded)]
+    finer = [_cheap_part(points[:, k], costs, k, moves, usable, start) for k in np.flatnonzero(costs.rounded)]
     del costs, front
-    for within in finer:
-        if within is not None and not meter.message and within.tobytes() not in searched:
-            searched.add(within.tobytes())
-            parts += _search(problem, moves.within(within), within, meter, searched, most)
+    for part in finer:
+        if part is not None and not meter.message:
+            cheap, within = part
+            key = cheap.legal.tobytes() + within.tobytes()
+            if key not in searched:
+                searched.add(key)
+                parts += _search(problem, cheap, within, meter, searched, most)
     return parts
 
 
@@ -219,13 +214,14 @@ def _front_of_short_paths(moves: Moves, costs: Costs, start: int, goal: int, mos
 
 
 def _three(costs: Costs) -> Costs:
-    """Return one to three costs as three, with some that are nothing before the last, which alone may depend on headings."""
+    """Return one to three costs as three, with some that are nothing before the last, since turns come last."""
     place = [len(costs.step) - 1] * (3 - len(costs.step))
     return costs._replace(
         step=np.insert(costs.step, place, 0, axis=0),
         field=np.insert(costs.field, place, 0, axis=0),
         unit=np.insert(costs.unit, place, 1.0),
-        rounded=np.insert(costs.rounded, place, False),
+        off=np.insert(costs.off, place, 0),
+        enter=None if costs.enter is None else np.insert(costs.enter, place, 0, axis=0),
     )
 
 
@@ -234,17 +230,35 @@ def _costs_of(path: np.ndarray, moves: Moves, costs: Costs) -> np.ndarray:
     dx, dy = np.diff(moves.cells(path), axis=0).T
     heading = HEADING_OF[dy + 1, dx + 1]
     before = np.concatenate([[8], heading[:-1]])
-    return costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
+    total = costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
+    return total if costs.enter is None else total + costs.enter[:, path[1:], heading].sum(axis=1)
 
 
-def _cells_of_cheap(costs: np.ndarray, field: np.ndarray, usable: np.ndarray) -> np.ndarray | None:
-    """Return the usable cells that paths of low cost can visit, or None if there is no such path, or no finer unit for it."""
+def _cheap_part(
+    points: np.ndarray, costs: Costs, k: int, moves: Moves, usable: np.ndarray, start: int
+) -> tuple[Moves, np.ndarray] | None:
+    """Return the moves and the usable cells that paths of low cost can take, or None if they have no finer unit.
+
+    There is none, either, if no path has a low cost.
+    """
     # The rounding of each cell may have hidden a path that costs a little more.
-    dearest = costs + np.count_nonzero(usable)
+    dearest = points + costs.off[k] * np.count_nonzero(usable)
+    field = costs.field[k]
+    if costs.enter is not None:
+        into = np.where(moves.entered, field + costs.enter[k].T, UNREACHABLE)
+        # No cell can be visited for less, and the start is not entered.
+        field = np.where(np.arange(moves.n_cells) == start, field, into.min(axis=0))
+        usable = usable & (field < UNREACHABLE)
     values = np.sort(field[usable])
     left = np.cumsum(values)[np.searchsorted(values, dearest, side="right") - 1]
-    cheap = (costs < _FINE) & (left <= _FINER * values.sum())
-    return usable & (field <= dearest[cheap].max()) if cheap.any() else None
+    cheap = (points < _FINE) & (left <= _FINER * values.sum())
+    if not cheap.any():
+        return None
+    most = dearest[cheap].max()
+    within = usable & (field <= most)
+    if costs.enter is not None:
+        moves = moves.without(into > most)
+    return moves.within(within), within
 
 
 def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray], np.ndarray]:
@@ -267,8 +281,8 @@ def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray],
     if not close.all():
         wrong = problem.objective_names[np.flatnonzero(~close.all(axis=0))[0]]
         raise GridPathError(
-            f"the objective {wrong!r} scores a path otherwise than by the sum of its field over the visited cells, expected a "
-            f"field of None then"
+            f"the objective {wrong!r} scores a path otherwise than by the sum of what it says of cells, moves and turns, "
+            f"expected no field, moves and turn_cost then"
         )
     keep = np.lexsort(F.T[::-1])
     rounded = np.any([part.rounded for part in parts], axis=0)

@@ -80,7 +80,8 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
 
 def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, map_) -> Hull:
     def from_end(order):
-        return backward_costs(moves, *_pair(costs, order), goal, costs.with_heading, stop=meter.stop)
+        taken = costs.take(order)
+        return backward_costs(moves, taken.step, taken.field, goal, costs.with_heading, stop=meter.stop, enter=taken.enter)
 
     def minimise(gap):
         _, low, high, _ = gap
@@ -95,7 +96,7 @@ def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weigh
         for order, search in zip(((0, 1), (1, 0)), searches, strict=True)
     )
     del searches
-    n_weights = _affordable(n_weights, bounds, meter)
+    n_weights = _affordable(n_weights, bounds, costs, meter)
     weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
     spent = np.stack(list(map_(lambda k: _spent(moves, costs, k, start, meter), range(2))))
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
@@ -140,19 +141,15 @@ def _rounded_down(sums: np.ndarray) -> np.ndarray:
     return np.nextafter(sums.astype(np.float32), np.float32(0))
 
 
-def _affordable(n_weights: int, bounds: np.ndarray, meter: Meter) -> int:
+def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter) -> int:
     """Return how many weighted sums there is memory for, and note what arrays of the size of the grid take."""
     n_states = bounds.shape[1]
     # Bounds, the searches under way with their costs, and the states of the label search.
     base = n_states * (bounds.itemsize * 2 + (17 + 32) * _SIDE_BY_SIDE + 40)
+    base += 0 if costs.enter is None else costs.enter.nbytes * (1 + _SIDE_BY_SIDE)
     n_weights = max(0, min(n_weights, int((meter.memory / 2 - base) // (4 * n_states))))
     meter.n_fixed = base + 4 * n_states * max(n_weights, 1)
     return n_weights
-
-
-def _pair(costs: Costs, order) -> tuple[np.ndarray, np.ndarray]:
-    taken = costs.take(order)
-    return taken.step, taken.field
 
 
 def _follow(moves: Moves, costs: Costs, searched: Costs, found, start: int, goal: int):
@@ -164,17 +161,19 @@ def _follow(moves: Moves, costs: Costs, searched: Costs, found, start: int, goal
         if moves.legal[start] >> m & 1:
             cell = start + int(moves.offsets[m])
             rest = search[:, 8 * cell + m if costs.with_heading else cell]
-            total = tuple(int(searched.step[k, 8, m] + searched.field[k, cell] + rest[k]) for k in range(2))
+            into = searched.field[:, cell] + (0 if searched.enter is None else searched.enter[:, cell, m])
+            total = tuple(int(searched.step[k, 8, m] + into[k] + rest[k]) for k in range(2))
             if total < best:
                 best, first = total, m
     total = np.zeros(2, dtype=np.int64)
     path = np.empty(moves.n_cells + 1, dtype=np.int64)
-    n = follow(moves.offsets, costs.step, costs.field, costs.with_heading, ahead, start, first, goal, total, path)
+    arrays = costs.step, costs.field, costs.enter, costs.with_heading
+    n = follow(moves.offsets, *arrays, ahead, start, first, goal, total, path)
     return (int(total[0]), int(total[1])), path[:n].copy()
 
 
 @kernel
-def follow(offsets, step, field, with_heading, ahead, start, first, goal, total, path):
+def follow(offsets, step, field, enter, with_heading, ahead, start, first, goal, total, path):
     """Add up costs along a path that begins along ``first`` and goes on as ``ahead`` says; return how many cells it has."""
     cell = start
     path[0] = start
@@ -187,6 +186,8 @@ def follow(offsets, step, field, with_heading, ahead, start, first, goal, total,
         n += 1
         for k in range(2):
             total[k] += step[k, before, heading] + field[k, cell]
+            if enter is not None:
+                total[k] += enter[k, cell, heading]
         if cell == goal:
             return n
         if with_heading:
@@ -206,22 +207,33 @@ def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent:
 
     None if a budget is used up before. States from which no path below the corner goes on have no finite sum.
     """
-    step = np.stack([_weighted(costs.step, weights), costs.step[0]])
-    field = np.stack([_weighted(costs.field, weights), costs.field[0]])
+    step, field, enter = (
+        None if values is None else np.stack([_weighted(values, weights), values[0]])
+        for values in (costs.step, costs.field, costs.enter)
+    )
     # One unit beyond the corner lies what labels stay below, see _corners of the label search; and one more for rounding.
     limit = int((weights[0] * (corner[0] + 1) + weights[1] * (corner[1] + 1)) * (1 + 1e-12)) + 2
-    found = backward_costs(moves, step, field, goal, costs.with_heading, _weighted(spent, weights), limit, meter.stop)
+    weighted = _weighted(spent, weights)
+    found = backward_costs(moves, step, field, goal, costs.with_heading, weighted, limit, meter.stop, enter)
     if meter.message:
         return None
-    point, path = _follow(moves, costs, costs._replace(step=step, field=field), found, start, goal)
+    point, path = _follow(moves, costs, costs._replace(step=step, field=field, enter=enter), found, start, goal)
     return found[0][0], point, path
 
 
 def _spent(moves: Moves, costs: Costs, k: int, start: int, meter: Meter) -> np.ndarray:
     """Return lower bounds of one of the costs from the start to each cell, int64, shape (n_cells,)."""
     step = np.broadcast_to(costs.step[k].min(axis=0), (2, *costs.step.shape[1:])).copy()
+    enter = None
+    if costs.enter is not None:
+        # A step taken backwards costs what it costs to enter, going forth, the cell that it leaves.
+        enter = np.zeros_like(costs.enter[[k, k]])
+        for m in range(8):
+            leads = np.flatnonzero(moves.legal >> np.uint8(m) & 1)
+            enter[:, leads, (m + 4) % 8] = costs.enter[k, leads + moves.offsets[m], m]
     # The search enters the start instead of the cell that it set out from.
-    ahead = backward_costs(moves.backward(), step, np.stack([costs.field[k]] * 2), start, stop=meter.stop)[0][0]
+    field = np.stack([costs.field[k]] * 2)
+    ahead = backward_costs(moves.backward(), step, field, start, stop=meter.stop, enter=enter)[0][0]
     spent = np.minimum(ahead + costs.field[k] - costs.field[k, start], UNREACHABLE)
     spent[start] = 0
     return spent

@@ -9,7 +9,7 @@ from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.exact.label_lists import covered, empty_lists, has_room, insert
 from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
-from pymoo_gridpath.exact.two import CLOSED_FULL, DIRECT, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow
+from pymoo_gridpath.exact.two import CLOSED_FULL, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
 # Places in the array of counts.
@@ -29,14 +29,14 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
 
     Labels are popped in lexicographic order, so that the first objective needs no comparison: a label is dominated if and only
     if one of the pairs (g2, g3) closed so far at its state is. With headings, a pair counts for the other headings of the
-    cell too, by the turn that it takes to get there. Where steps are limited they are counted as well: a label with fewer
+    cell too, by the turn that it takes to get there, where that is no matter of the first objective. Where steps are limited they are counted as well: a label with fewer
     steps is not dominated before the goal, since what leads on from it may take more.
 
     Parameters
     ----------
     moves : Moves
     costs : Costs
-        Of three objectives. If one depends on headings it must be the third.
+        Of three objectives; those that depend on headings come faster as the last ones.
     start, goal : int
     meter : Meter
         Ends the search when a budget is used up; the part of the front with the least first costs is returned then.
@@ -63,9 +63,9 @@ class _Search:
         self.n_headings = 8 if costs.with_heading else 1
         # Where any number of steps will do, none are counted.
         self.per_step, self.most_steps = (0, 0) if most_steps is None else (1, most_steps)
-        bounds = [self._bound(costs.step[k], costs.field[k], costs.with_heading and k == 2, meter) for k in range(3)]
-        no_field = np.zeros_like(costs.field[0])
-        left = None if most_steps is None else self._bound(np.ones_like(costs.step[0]), no_field, False, meter)
+        self.direct, self.on_the_spot = costs.direct, costs.on_the_spot
+        bounds = [self._bound(costs.take([k, k]), meter) for k in range(3)]
+        left = None if most_steps is None else self._bound(_steps_alone(costs), meter)
         self.bounds = np.stack([*bounds, np.zeros_like(bounds[0]) if left is None else left], axis=1)
         # The last list is that of the paths found.
         self.lists, self.rows, self.taken = empty_lists(len(self.bounds) + 1)
@@ -75,11 +75,13 @@ class _Search:
         self.counts = np.zeros(4, dtype=np.int64)
         self._open_first_steps()
 
-    def _bound(self, step: np.ndarray, field: np.ndarray, with_heading: bool, meter: Meter) -> np.ndarray:
-        """Return the least cost of one kind from every state."""
-        pair = np.stack([step, step]), np.stack([field, field])
-        bound = backward_costs(self.moves, *pair, self.goal, with_heading, stop=meter.stop)[0][0]
-        return bound if with_heading else np.repeat(bound, self.n_headings)
+    def _bound(self, costs: Costs, meter: Meter) -> np.ndarray:
+        """Return the least cost from every state, where two costs are the same."""
+        with_heading = costs.with_heading
+        found = backward_costs(
+            self.moves, costs.step, costs.field, self.goal, with_heading, stop=meter.stop, enter=costs.enter
+        )
+        return found[0][0] if with_heading else np.repeat(found[0][0], self.n_headings)
 
     def _open_first_steps(self) -> None:
         self.closed[0] = (self.start, -1)
@@ -89,6 +91,7 @@ class _Search:
                 cell = self.start + int(self.moves.offsets[m])
                 state = 8 * cell + m if self.costs.with_heading else cell
                 f = self.costs.step[:, 8, m] + self.costs.field[:, cell] + self.bounds[state, :3]
+                f += 0 if self.costs.enter is None else self.costs.enter[:, cell, m]
                 steps = self.per_step + self.bounds[state, 3]
                 if f.max() < UNREACHABLE and steps <= self.most_steps:
                     load = (8 * cell + m) << 32
@@ -108,8 +111,10 @@ class _Search:
                 self.moves.offsets,
                 self.costs.step,
                 self.costs.field,
+                self.costs.enter,
                 self.costs.with_heading,
-                DIRECT,
+                self.on_the_spot,
+                self.direct,
                 self.bounds,
                 self.per_step,
                 self.most_steps,
@@ -131,7 +136,7 @@ class _Search:
     @property
     def n_fixed(self) -> int:
         """Bytes of the arrays whose size is that of the grid."""
-        return self.bounds.nbytes + self.lists.nbytes + self.costs.field.nbytes
+        return self.bounds.nbytes + self.lists.nbytes + self.costs.nbytes
 
     @property
     def n_labels(self) -> int:
@@ -152,6 +157,12 @@ class _Search:
         self.heap = self.rows = self.heap[:0].copy()
         closed, ends = self.closed[: self.counts[N_CLOSED]], self.found[: self.counts[N_FOUND], 0]
         return smoothest_paths(self.moves, self.costs, closed, ends, meter)
+
+
+def _steps_alone(costs: Costs) -> Costs:
+    """Return two costs that are the number of steps."""
+    one = costs.take([0, 0])
+    return one._replace(step=np.ones_like(one.step), field=np.zeros_like(one.field), enter=None)
 
 
 @kernel
@@ -221,7 +232,9 @@ def search_three(
     offsets,
     step,
     field,
+    enter,
     with_heading,
+    on_the_spot,
     direct,
     bounds,
     per_step,
@@ -243,10 +256,8 @@ def search_three(
     ----------
     legal, offsets
         See `Moves`.
-    step, field, with_heading
+    step, field, enter, with_heading, on_the_spot, direct
         See `Costs`.
-    direct : int64, shape (8, 8)
-        See `DIRECT`.
     bounds : int64, shape (n_states, 4)
         Lower bounds of the rest: three objectives, and steps.
     per_step, most_steps : int
@@ -311,9 +322,12 @@ def search_three(
             n_closed += 1
             continue
         if with_heading:
-            # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
+            # Whoever turns on the spot from this heading to another is no worse than who came with that one and higher costs;
+            # those who come later have no lower first cost if turning costs nothing in it.
             for h in range(8):
-                insert(lists, rows, taken, 8 * cell + h, g2, g3 + step[2, heading, h], steps)
+                if on_the_spot[0, heading, h] == 0:
+                    second, third = g2 + on_the_spot[1, heading, h], g3 + on_the_spot[2, heading, h]
+                    insert(lists, rows, taken, 8 * cell + h, second, third, steps)
         else:
             insert(lists, rows, taken, cell, g2, g3, steps)
         g1 = f1 - bounds[state, 0]
@@ -330,12 +344,17 @@ def search_three(
                 continue
             next_state = 8 * next_cell + m if with_heading else next_cell
             next_f1 = g1 + step[0, last, m] + field[0, next_cell] + bounds[next_state, 0]
+            if enter is not None:
+                next_f1 += enter[0, next_cell, m]
             next_steps = steps + per_step
             next_all = next_steps + bounds[next_state, 3]
             if next_f1 >= 2**61 or next_all > most_steps:
                 continue
             next2 = g2 + step[1, last, m] + field[1, next_cell]
             next3 = g3 + step[2, last, m] + field[2, next_cell]
+            if enter is not None:
+                next2 += enter[1, next_cell, m]
+                next3 += enter[2, next_cell, m]
             if covered(lists, rows, next_state, next2, next3, next_steps):
                 continue
             next_f2 = next2 + bounds[next_state, 1]

@@ -55,16 +55,16 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
     """
     if costs.with_heading:
         return traced_paths(closed, ends)
-    same_steps = costs.step.min(axis=(1, 2)).any()
+    same_steps = costs.tells_steps
     of_closed = _BYTES_OF_CLOSED + 8 * len(costs.step)
     of_leading = _BYTES_OF_LEADING + (0 if same_steps else _BYTES_OF_STEPS)
     if meter.n_fixed + len(closed) * (of_closed + of_leading) >= meter.memory:
         return traced_paths(closed, ends)
     first, place = _grouped(closed, moves.n_cells)
-    cell, spent = _spent(closed, place, moves.width, HEADING_OF, costs.step, costs.field)
+    cell, spent = _spent(closed, place, moves.width, HEADING_OF, costs.step, costs.field, costs.enter)
     start, end = place[0], place[ends]
     del place
-    grid = moves.legal, moves.offsets, costs.step, costs.field
+    grid = moves.legal, moves.offsets, costs.step, costs.field, costs.enter
     slot = np.full(len(closed), -1, dtype=np.int32)
     at_a_time = max(_LEAST_AT_A_TIME, int(len(closed) * _SHARE_AT_A_TIME))
     paths: list[np.ndarray] = []
@@ -106,7 +106,7 @@ def _grouped(closed, n_cells):
 
 
 @kernel
-def _spent(closed, place, width, heading_of, step, field):
+def _spent(closed, place, width, heading_of, step, field, enter):
     """Return the cell, int32, shape (n,), and the costs, int64, shape (n, k), of the label at each place."""
     cells = np.empty(len(closed), dtype=np.int32)
     cells[place[0]] = closed[0, 0]
@@ -118,12 +118,14 @@ def _spent(closed, place, width, heading_of, step, field):
         m = heading_of[cell // width - before // width + 1, cell % width - before % width + 1]
         for i in range(len(step)):
             spent[place[k], i] = spent[place[parent], i] + step[i, 8, m] + field[i, cell]
+            if enter is not None:
+                spent[place[k], i] += enter[i, cell, m]
         cells[place[k]] = cell
     return cells, spent
 
 
 @kernel
-def _find_parents(label, cell, spent, first, legal, offsets, step, field, parents):
+def _find_parents(label, cell, spent, first, legal, offsets, step, field, enter, parents):
     """Fill in the label from which a step along each heading leads to a label at its costs, -1 if there is none."""
     here = cell[label]
     for m in range(8):
@@ -132,6 +134,8 @@ def _find_parents(label, cell, spent, first, legal, offsets, step, field, parent
         if before < 0 or before >= len(legal) or not (legal[before] >> m) & 1:
             continue
         wanted = spent[label, 0] - step[0, 8, m] - field[0, here]
+        if enter is not None:
+            wanted -= enter[0, here, m]
         low = first[before]
         high = first[before + 1]
         while low < high:
@@ -143,7 +147,10 @@ def _find_parents(label, cell, spent, first, legal, offsets, step, field, parent
         while low < first[before + 1] and spent[low, 0] == wanted:
             same = True
             for i in range(1, len(step)):
-                same = same and spent[low, i] == spent[label, i] - step[i, 8, m] - field[i, here]
+                before_it = spent[label, i] - step[i, 8, m] - field[i, here]
+                if enter is not None:
+                    before_it -= enter[i, here, m]
+                same = same and spent[low, i] == before_it
             if same:
                 parents[m] = low
                 break
@@ -151,7 +158,7 @@ def _find_parents(label, cell, spent, first, legal, offsets, step, field, parent
 
 
 @kernel
-def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field, slot):
+def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field, enter, slot):
     """Return the labels on paths to the first so many ends, the slots of their parents by heading, and how many ends these are.
 
     The slot of each of those labels is filled in.
@@ -175,7 +182,7 @@ def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field
                 labels = _doubled(labels)
             if i == len(parents):
                 parents = _doubled(parents)
-            _find_parents(labels[i], cell, spent, first, legal, offsets, step, field, parents[i])
+            _find_parents(labels[i], cell, spent, first, legal, offsets, step, field, enter, parents[i])
             for m in range(8):
                 parent = parents[i, m]
                 if parent < 0:

@@ -7,7 +7,7 @@ label is dominated), with three additions that leave the result as it is:
   hull, its cheapest weighted completion has to stay below the furthest corner of the staircase there (the second phase of the
   two-phase method).
 - Passes with a tolerance find paths near the front first, which make the staircase fine.
-- A step is skipped if the cell before led straight to its end: the detour is dominated.
+- A step is skipped if the cell before led straight to its end and no cost speaks against it: the detour is dominated.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.exact.supported import Hull, supported_points
 from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
-from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
 
@@ -64,17 +63,6 @@ class Front(NamedTuple):
     points: np.ndarray
 
 
-def _direct_headings() -> np.ndarray:
-    known = {(int(dx), int(dy)): m for m, (dx, dy) in enumerate(HEADINGS)}
-    known[0, 0] = 8
-    sums = HEADINGS[:, None] + HEADINGS[None, :]
-    return np.array([[known.get((int(dx), int(dy)), -1) for dx, dy in row] for row in sums], dtype=np.int64)
-
-
-#: The heading of the one step that does what two do; 8 where the second step leads back, -1 where no single step does.
-DIRECT = _direct_headings()
-
-
 def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
     """Return the exact front of two objectives.
 
@@ -85,7 +73,7 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     ----------
     moves : Moves
     costs : Costs
-        Of two objectives; if one depends on headings, it comes faster as the second.
+        Of two objectives; if only one depends on headings, it comes faster as the second.
     start, goal : int
     meter : Meter
         Ends the search when a budget is used up; the best paths found by then are returned.
@@ -137,6 +125,12 @@ class _Search:
         self.states[:, BOUND1], self.states[:, BOUND2] = hull.bounds
         repeat = n_states // moves.n_cells
         self.states[:, FIELD1], self.states[:, FIELD2] = np.repeat(costs.field, repeat, axis=1)
+        # Where a state has a heading, what entering it costs is known.
+        self.enter = costs.enter
+        if costs.enter is not None and repeat == 8:
+            self.states[:, FIELD1 : FIELD2 + 1] += costs.enter.reshape(2, n_states).T
+            self.enter = None
+        self.direct, self.on_the_spot = costs.direct, costs.on_the_spot
         self.hull = hull
         self.corners, self.ceilings, self.marks = _corners(hull, known)
         self.heap = np.empty((1024, 3), dtype=np.int64)
@@ -156,8 +150,9 @@ class _Search:
             if self.moves.legal[self.start] >> m & 1:
                 cell = self.start + int(self.moves.offsets[m])
                 state = self.states[8 * cell + m if with_heading else cell]
-                f1 = self.costs.step[0, 8, m] + state[FIELD1] + state[BOUND1]
-                f2 = self.costs.step[1, 8, m] + state[FIELD2] + state[BOUND2]
+                first = self.costs.step[:, 8, m] + (0 if self.enter is None else self.enter[:, cell, m])
+                f1 = first[0] + state[FIELD1] + state[BOUND1]
+                f2 = first[1] + state[FIELD2] + state[BOUND2]
                 if f1 < UNREACHABLE:
                     push(self.heap, self.counts[N_OPEN], f1, 2 * f2 + (cell == self.goal), (8 * cell + m) << 32)
                     self.counts[N_OPEN] += 1
@@ -173,8 +168,10 @@ class _Search:
                 self.moves.legal,
                 self.moves.offsets,
                 self.costs.step,
+                self.enter,
                 self.costs.with_heading,
-                DIRECT,
+                self.on_the_spot,
+                self.direct,
                 self.states,
                 self.goal,
                 self.hull.weights,
@@ -305,7 +302,9 @@ def search_two(
     legal,
     offsets,
     step,
+    enter,
     with_heading,
+    on_the_spot,
     direct,
     states,
     goal,
@@ -333,10 +332,12 @@ def search_two(
     legal, offsets
         See `Moves`.
     step : int64, shape (2, 9, 8)
-        See `Costs`.
+    enter : int64, shape (2, n_cells, 8), or None
+        See `Costs`; with headings it is part of ``states``.
     with_heading : bool
+    on_the_spot : int64, shape (2, 8, 8)
     direct : int64, shape (8, 8)
-        See `DIRECT`.
+        See `Costs`.
     states : int64, shape (n_cells, 5), or (8 * n_cells, 5) with headings
         Least g2 of the closed labels, lower bounds of the rest in both objectives, costs of the cell in both.
     goal : int
@@ -399,10 +400,11 @@ def search_two(
         if from_gap < 0:
             continue
         if with_heading:
-            # Whoever turns on the spot from this heading to another is no worse than who came with that one and more turn.
+            # Whoever turns on the spot from this heading to another is no worse than who came with that one and higher costs;
+            # those who come later have no lower first cost if turning costs nothing in it.
             for h in range(8):
-                turned = g2 + step[1, heading, h]
-                if turned < states[8 * cell + h, LEAST2]:
+                turned = g2 + on_the_spot[1, heading, h]
+                if turned < states[8 * cell + h, LEAST2] and on_the_spot[0, heading, h] == 0:
                     states[8 * cell + h, LEAST2] = turned
         states[state, LEAST2] = g2
         closed[n_closed, 0] = cell
@@ -431,12 +433,16 @@ def search_two(
             next_cell = cell + offsets[m]
             next_state = 8 * next_cell + m if with_heading else next_cell
             next2 = g2 + step[1, before, m] + states[next_state, FIELD2]
+            if enter is not None:
+                next2 += enter[1, next_cell, m]
             if next2 >= states[next_state, LEAST2] - slack:
                 continue
             next_f2 = next2 + states[next_state, BOUND2]
             if next_f2 >= best2:
                 continue
             next1 = g1 + step[0, before, m] + states[next_state, FIELD1]
+            if enter is not None:
+                next1 += enter[0, next_cell, m]
             next_f1 = next1 + states[next_state, BOUND1]
             if next_f1 >= 2**61:
                 continue

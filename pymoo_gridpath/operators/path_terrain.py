@@ -3,36 +3,47 @@
 from __future__ import annotations
 
 import weakref
+from typing import Any
 
 import numpy as np
 
-from pymoo_gridpath.objectives import Length, field_of
+from pymoo_gridpath.objectives import moves_of, visiting_costs
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search.sequences import are_legal, mend
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
 
 # Made once for each problem; kept apart from it, so that it pickles and compares as before.
-_TERRAINS: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
+_TERRAINS: weakref.WeakKeyDictionary[Any, tuple[Terrain, list[int]]] = weakref.WeakKeyDictionary()
 
 # Weight of the length where it is no objective: of ways that cost the same, the shorter.
 LEAST_WEIGHT = FULL_WEIGHT // 64
 
 
 def terrain_of(problem) -> Terrain:
-    """Return the terrain of a problem: the length and the fields of its objectives.
+    """Return the terrain of a problem: the length, and what visiting each cell costs in its objectives, see `visiting_costs`.
 
     Raises
     ------
     GridPathError
         If the problem has no path representation.
     """
+    return _known_of(problem)[0]
+
+
+def _known_of(problem) -> tuple[Terrain, list[int]]:
+    """Return the terrain of a problem, and the numbers of its terms that are objectives, at least one."""
     representation = representation_of(problem)
     if problem not in _TERRAINS:
-        fields = [field_of(objective, problem.grid, representation.box) for objective in problem.objectives]
+        fields = [visiting_costs(objective, problem.grid, representation.box) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)
-        _TERRAINS[problem] = make_terrain(moves, start, goal, [field for field in fields if field is not None])
+        terrain = make_terrain(moves, start, goal, [field for field in fields if field is not None])
+        terms = list(range(1, terrain.n_terms))
+        # What tells straight steps from diagonal ones goes by the length.
+        if not terms or any(isinstance(moves_of(objective, problem.grid), tuple) for objective in problem.objectives):
+            terms.insert(0, 0)
+        _TERRAINS[problem] = terrain, terms
     return _TERRAINS[problem]
 
 
@@ -54,11 +65,7 @@ def random_weights(problem, n: int, random_state) -> np.ndarray:
 
 def objective_terms(problem) -> list[int]:
     """Return the numbers of the terms that are objectives, at least one."""
-    n_fields = terrain_of(problem).n_terms - 1
-    terms = list(range(1, n_fields + 1))
-    if not terms or any(isinstance(objective, Length) for objective in problem.objectives):
-        terms.insert(0, 0)
-    return terms
+    return _known_of(problem)[1]
 
 
 def whole_weights(problem, shares: np.ndarray) -> np.ndarray:

@@ -121,6 +121,32 @@ class Paths(ABC):
         """
         return self._sum(check_summed(field, (self.grid.occupied.size,)).take(self.sequences.cells))
 
+    def moves_total(self, enter: np.ndarray) -> np.ndarray:
+        """Return the sum of the costs of the steps.
+
+        A step costs what it costs to enter the cell where it ends along its heading, whether or not it is legal. A jump is one
+        step along the heading of the signs of its dx and dy.
+
+        Parameters
+        ----------
+        enter : numpy.ndarray, shape (8, height, width)
+            By [heading, y, x] of the cell entered; row k is for the k-th of `pymoo_gridpath.neighbourhood.HEADINGS`.
+
+        Returns
+        -------
+        numpy.ndarray, shape (N,)
+        """
+        expected = "a cost for each heading and cell, as an objective's moves returns them"
+        enter = checks.array("enter", enter, (8, *self.grid.shape), expected=expected)
+        cells, offsets = self.sequences
+        dx, dy = self._steps
+        heading = _HEADING.take(np.sign(dx) + 3 * np.sign(dy) + 4)
+        costs = np.zeros(len(cells), dtype=enter.dtype)
+        costs[1:] = enter.take(heading[:-1].astype(np.int64) * self.grid.occupied.size + cells[1:])
+        # The start is not entered.
+        costs[offsets[:-1]] = 0
+        return sums_of(costs, offsets)
+
     @property
     def interfering_cells(self) -> np.ndarray:
         """Number of occupied cells that each path crosses, int, shape (N,); a legal path has 0, and no other has.

@@ -14,7 +14,7 @@ from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
-from pymoo_gridpath.objectives import Objective, Turn, boxed_field_of, make_objectives
+from pymoo_gridpath.objectives import Objective, boxed_field_of, make_objectives, prepared, visiting_costs
 from pymoo_gridpath.paths import check_paths
 from pymoo_gridpath.paths.frame import Axis, check_axis
 from pymoo_gridpath.representations import CellSequence, Representation, default_representation, make_representation
@@ -145,8 +145,13 @@ class GridPathProblem(Problem):
             representation = default_representation(grid.corner_cutting, axis)
         if isinstance(representation, str) and representation == CellSequence.name and axis == "auto":
             # Room for the safest paths in the fields of these objectives, and for what else they may bring about.
-            costs = [field for field in fields if field is not None]
-            spare = 2.0 if len(costs) > 1 or any(isinstance(objective, Turn) for objective in self.objectives) else 1.0
+            costs = [
+                visiting_costs(objective, grid, grid.whole, field)
+                for objective, field in zip(self.objectives, fields, strict=True)
+                if objective.additive
+            ]
+            costs = [cost for cost in costs if cost is not None]
+            spare = 2.0 if len(costs) > 1 or any(objective.turn_cost for objective in self.objectives) else 1.0
             representation = CellSequence(grid, self.start, self.goal, fields=costs, spare=spare)
         if isinstance(representation, str):
             representation = make_representation(representation, grid, self.start, self.goal, axis)
@@ -157,7 +162,9 @@ class GridPathProblem(Problem):
         # With how many seconds there was none, and why.
         self._no_front: tuple[float, str] | None = None
         self._warned_of_operators = False
-        self._sums = [None if field is None else representation.prepare(field) for field in fields]
+        self._prepared = [
+            prepared(objective, representation, field) for objective, field in zip(self.objectives, fields, strict=True)
+        ]
         super().__init__(
             n_var=representation.n_var,
             n_obj=len(self.objectives),
@@ -255,8 +262,8 @@ class GridPathProblem(Problem):
         """Return the plain objectives of paths, without any penalty, float, shape (N, n_obj)."""
         check_paths(paths)
         F = np.empty((len(paths), self.n_obj))
-        for k, (objective, sums) in enumerate(zip(self.objectives, self._sums, strict=True)):
-            values = objective(paths, sums)
+        for k, (objective, prepared_) in enumerate(zip(self.objectives, self._prepared, strict=True)):
+            values = objective(paths, prepared_)
             if type(values) is not np.ndarray or values.dtype.kind not in "iuf":
                 what = f"what the objective {shown(objective.name)} returned"
                 values = checks.array(what, values, expected="one number a path")

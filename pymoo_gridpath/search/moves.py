@@ -66,6 +66,12 @@ class Moves:
     def _shifted(self, padded: np.ndarray, dx: int, dy: int) -> np.ndarray:
         return padded[1 + dy : 1 + dy + self.height, 1 + dx : 1 + dx + self.width]
 
+    @property
+    def entered(self) -> np.ndarray:
+        """Whether a step along each heading ends in each cell, bool, shape (8, n_cells)."""
+        back = self.backward().legal
+        return np.stack([(back >> np.uint8((m + 4) % 8) & 1).astype(bool) for m in range(8)])
+
     def backward(self) -> Moves:
         """Return the steps that lead back: along the opposite heading wherever a step leads forth."""
         back = copy.copy(self)
@@ -80,6 +86,14 @@ class Moves:
             leads = np.flatnonzero((self.legal >> np.uint8(m) & 1).astype(bool) & usable)
             leads = leads[usable[leads + self.offsets[m]]]
             kept.legal[leads] |= np.uint8(1 << m)
+        return kept
+
+    def without(self, steps: np.ndarray) -> Moves:
+        """Return the steps but those along a heading to a cell, bool, shape (8, n_cells)."""
+        kept, entered = copy.copy(self), self.entered
+        kept.legal = self.legal.copy()
+        for m in range(8):
+            kept.legal[np.flatnonzero(entered[m] & steps[m]) - self.offsets[m]] &= np.uint8(255 - (1 << m))
         return kept
 
     @property

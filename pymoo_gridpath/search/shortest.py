@@ -26,6 +26,7 @@ def backward_costs(
     spent: np.ndarray | None = None,
     limit: int = UNREACHABLE,
     stop: Callable[[], bool] | None = None,
+    enter: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the costs of the lexicographically cheapest path to a goal from every cell, or from every cell and heading.
 
@@ -48,6 +49,8 @@ def backward_costs(
         Cells are left out, as if no path led on, where the least first cost of what is spent and what lies ahead reaches it.
     stop : callable, optional
         Asked many times a second; if it returns True the search ends, and what it has found so far holds for nothing.
+    enter : numpy.ndarray of int64, shape (2, n_cells, 8), optional
+        First and second cost of entering each cell along each heading, besides.
 
     Returns
     -------
@@ -68,7 +71,7 @@ def backward_costs(
     if spent is None:
         spent = np.zeros(moves.n_cells, dtype=np.int64)
     while n > 0:
-        arrays = step, field, with_heading, spent, limit, cost, ahead
+        arrays = step, field, enter, with_heading, spent, limit, cost, ahead
         heap, n = _expand(moves.legal, moves.offsets, *arrays, heap, n, _POPS_AT_A_TIME)
         if n > 0 and stop is not None and stop():
             break
@@ -76,7 +79,7 @@ def backward_costs(
 
 
 @kernel
-def _expand(legal, offsets, step, field, with_heading, spent, limit, cost, ahead, heap, n, max_pops):
+def _expand(legal, offsets, step, field, enter, with_heading, spent, limit, cost, ahead, heap, n, max_pops):
     """Expand at most so many of the ``n`` states in a heap, cheapest first; return the heap and how many it then holds."""
     n_cells = len(legal)
     pops = 0
@@ -104,6 +107,9 @@ def _expand(legal, offsets, step, field, with_heading, spent, limit, cost, ahead
                 heading = h if with_heading else 8
                 total1 = first + step[0, heading, m] + field[0, cell]
                 total2 = second + step[1, heading, m] + field[1, cell]
+                if enter is not None:
+                    total1 += enter[0, cell, m]
+                    total2 += enter[1, cell, m]
                 if total1 + spent[before] >= limit:
                     continue
                 if total1 < cost[0, origin] or (total1 == cost[0, origin] and total2 < cost[1, origin]):
