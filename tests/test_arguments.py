@@ -38,8 +38,8 @@ class Own(Objective):
     def field(self, grid):
         return self.cost
 
-    def __call__(self, paths, sums):
-        values = paths.total(sums)
+    def __call__(self, paths, prepared):
+        values = paths.total(prepared.field)
         return values if self.kind is None else values.astype(self.kind)
 
 
@@ -174,7 +174,7 @@ def test_values_of_an_objective_may_be_of_any_type_of_number(kind):
 
 def test_an_objective_that_returns_nan_is_named():
     class Broken(Own):
-        def __call__(self, paths, sums):
+        def __call__(self, paths, prepared):
             return np.full(len(paths), np.nan)
 
     problem = GridPathProblem(GRID, **QUERY, representation="integer", objectives=["length", Broken(FIELD)])

@@ -68,9 +68,6 @@ class Mud(Objective):
         y, x = np.indices(grid.shape)
         return (((x - X0 * (grid.width > N)) * 7 + (y - Y0 * (grid.width > N)) * 3) % 5).astype(float)
 
-    def __call__(self, paths, sums):
-        return paths.total(sums)
-
 
 @pytest.mark.parametrize("corner_cutting", [False, True])
 @pytest.mark.parametrize("representation", ["cells", "integer", "absolute"])

@@ -279,7 +279,7 @@ def _own_objective(w: World, field, factor):
         def field(self, grid):
             return field
 
-        def __call__(self, paths, sums):
+        def __call__(self, paths, prepared):
             return factor
 
     problem = GridPathProblem(w.grid, **w.query, representation="integer", objectives=[Own()])

@@ -85,7 +85,7 @@ class Bends(Objective):
 
     name = "bends"
 
-    def __call__(self, paths, sums):
+    def __call__(self, paths, prepared):
         return np.asarray(paths.turn) / 45.0
 
 

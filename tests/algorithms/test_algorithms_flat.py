@@ -30,7 +30,7 @@ class Constant(Objective):
 
     name, label = "constant", "Constant"
 
-    def __call__(self, paths, sums=None):
+    def __call__(self, paths, prepared):
         return np.full(len(paths), 0.3)
 
 
@@ -43,9 +43,6 @@ class Mud(Objective):
         cost = np.zeros(grid.shape)
         cost[1:-1, 1:-1] = 1.5
         return cost
-
-    def __call__(self, paths, sums=None):
-        return paths.total(sums)
 
 
 def empty(width, height, goal, objectives, obstacles="penalty", representation="integer"):

@@ -98,9 +98,6 @@ def test_objectives_of_the_user_are_measures_too():
         def field(self, grid):
             return np.repeat(np.arange(grid.height)[:, None], grid.width, axis=1).astype(float)
 
-        def __call__(self, paths, sums):
-            return paths.total(sums)
-
     problem = make_problem(objectives=("length", Height()))
     trade_off = TradeOffSet.from_genes(problem, draw(problem))
     assert list(trade_off.measures) == [*MEASURES, "height"]

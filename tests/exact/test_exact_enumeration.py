@@ -7,15 +7,15 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from exact_fronts import Cost
+from exact_fronts import Cost, front_of, random_case
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.representations import CellSequence
+from pymoo_gridpath.testing.enumeration import STEPS, enumerate_paths, legal_steps
 
-STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
 N_GRIDS = 500
 
 
@@ -42,32 +42,6 @@ def objectives_of(grid, seed):
     return sets, fields
 
 
-def legal_steps(grid, cell, headings):
-    x, y = cell
-    for m in headings:
-        dx, dy = STEPS[m]
-        corners_free = grid.corner_cutting or (grid.is_free((x + dx, y)) and grid.is_free((x, y + dy)))
-        if grid.is_free((x + dx, y + dy)) and (dx == 0 or dy == 0 or corners_free):
-            yield m, (x + dx, y + dy)
-
-
-def enumerate_paths(grid, start, goal, headings):
-    """Return (cells, straight steps, diagonal steps, turn in units of 45 degrees) of every path without a loop."""
-    found = []
-
-    def walk(cells, straight, diagonal, turn, heading):
-        if cells[-1] == goal:
-            found.append((tuple(cells), straight, diagonal, turn))
-            return
-        for m, after in legal_steps(grid, cells[-1], headings):
-            if after not in cells:
-                apart = 0 if heading is None else abs(m - heading)
-                walk([*cells, after], straight + 1 - m % 2, diagonal + m % 2, turn + min(apart, 8 - apart), m)
-
-    walk([start], 0, 0, 0, None)
-    return found
-
-
 def scores(paths, fields):
     """Return every measure of paths by name."""
     measures = {
@@ -78,34 +52,6 @@ def scores(paths, fields):
     for name, field in fields.items():
         measures[name] = [sum(field[y, x] for x, y in cells) for cells, *_ in paths]
     return measures
-
-
-def front_of(measures, names):
-    """Return the non-dominated rows, each once and in ascending order."""
-    front = []
-    # In ascending order no row is dominated by a later one.
-    for row in sorted(set(zip(*(measures[name] for name in names), strict=True))):
-        if not any(all(a <= b for a, b in zip(better, row, strict=True)) for better in front):
-            front.append(row)
-    return np.array(front, dtype=float)
-
-
-def random_case(seed):
-    """Return a random small query, its headings and a representation, or None if it has no answer."""
-    random_state = np.random.default_rng(seed)
-    height, width = random_state.integers(3, 6, size=2)
-    occupied = random_state.random((height, width)) < 0.2
-    # No more than 14 free cells, for the sake of the enumeration.
-    free = np.argwhere(~occupied)
-    for y, x in random_state.permutation(free)[14:]:
-        occupied[y, x] = True
-    free = sorted(((int(x), int(y)) for y, x in np.argwhere(~occupied)), key=sum)
-    if len(free) < 2:
-        return None
-    grid = OccupancyGrid(occupied, corner_cutting=bool(random_state.integers(2)))
-    start, goal = random_state.permutation([free[0], free[-1]]).tolist()
-    representation = str(random_state.choice(["cells", "integer", "absolute", "binary", "mixed"], p=[0.5, 0.2, 0.1, 0.1, 0.1]))
-    return grid, start, goal, representation
 
 
 def make_problem(case, objectives):

@@ -31,7 +31,7 @@ from pymoo_gridpath.representations import CellSequence
 class NoField(Objective):
     name = label = "mystery"
 
-    def __call__(self, paths, sums=None):
+    def __call__(self, paths, prepared):
         return paths.length**2
 
 
@@ -41,8 +41,8 @@ class Inconsistent(Objective):
     def field(self, grid):
         return np.ones(grid.shape)
 
-    def __call__(self, paths, sums):
-        return 2.0 * paths.total(sums)
+    def __call__(self, paths, prepared):
+        return 2.0 * paths.total(prepared.field)
 
 
 @pytest.mark.parametrize("item", shipped_maps(), ids=lambda item: item.name)

@@ -49,16 +49,13 @@ class Dark(Objective):
     def field(self, grid):
         return np.tile(float(grid.width) - np.arange(grid.width), (grid.height, 1))
 
-    def __call__(self, paths, sums):
-        return paths.total(sums)
-
 
 class Odd(Objective):
     """An objective that does not add up."""
 
     name = label = "odd"
 
-    def __call__(self, paths, sums=None):
+    def __call__(self, paths, prepared):
         return paths.turn % 2
 
 

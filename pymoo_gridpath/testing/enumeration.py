@@ -1,0 +1,66 @@
+"""All legal paths of a small grid, and fronts of what they score, in plain Python."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from pymoo_gridpath.grid import Cell, OccupancyGrid
+
+#: The step (dx, dy) of each heading.
+STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
+
+
+class EnumeratedPath(NamedTuple):
+    """A path: its cells (x, y), its straight and diagonal steps, and its total turn in units of 45 degrees."""
+
+    cells: tuple[Cell, ...]
+    straight: int
+    diagonal: int
+    turn: int
+
+
+def legal_steps(grid: OccupancyGrid, cell: Cell, headings: Iterable[int] = range(8)) -> Iterator[tuple[int, Cell]]:
+    """Yield the heading and the end of each legal step from a cell."""
+    x, y = cell
+    for m in headings:
+        dx, dy = STEPS[m]
+        corners_free = grid.corner_cutting or (grid.is_free((x + dx, y)) and grid.is_free((x, y + dy)))
+        if grid.is_free((x + dx, y + dy)) and (dx == 0 or dy == 0 or corners_free):
+            yield m, (x + dx, y + dy)
+
+
+def turn_between(before: int | None, after: int) -> int:
+    """Return the turn between two headings in units of 45 degrees; nothing is before the first step."""
+    apart = 0 if before is None else abs(after - before)
+    return min(apart, 8 - apart)
+
+
+def enumerate_paths(
+    grid: OccupancyGrid, start: Cell, goal: Cell, headings: Iterable[int] = range(8)
+) -> list[EnumeratedPath]:
+    """Return every legal path without a loop. Grids of more than 14 free cells take long."""
+    found, headings = [], list(headings)
+
+    def walk(cells, straight, diagonal, turn, heading):
+        if cells[-1] == goal:
+            found.append(EnumeratedPath(tuple(cells), straight, diagonal, turn))
+            return
+        for m, after in legal_steps(grid, cells[-1], headings):
+            if after not in cells:
+                walk([*cells, after], straight + 1 - m % 2, diagonal + m % 2, turn + turn_between(heading, m), m)
+
+    walk([start], 0, 0, 0, None)
+    return found
+
+
+def non_dominated(rows: Iterable[tuple[float, ...]]) -> np.ndarray:
+    """Return the rows that no other dominates, each once and in ascending order, shape (N, k)."""
+    front: list[tuple[float, ...]] = []
+    # In ascending order no row is dominated by a later one.
+    for row in sorted(set(rows)):
+        if not any(all(a <= b for a, b in zip(better, row, strict=True)) for better in front):
+            front.append(row)
+    return np.array(front, dtype=float)
