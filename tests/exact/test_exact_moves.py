@@ -78,7 +78,7 @@ def by_distance(ground):
 
 
 def kinds_of(grid, seed):
-    """Return lists of objectives of every kind."""
+    """Return lists of objectives, those of five seeds of every kind."""
     draw = np.random.default_rng(seed)
     shape = grid.shape
     random = Ways("random", moves=draw.integers(0, 9, size=(8, *shape)).astype(float))
@@ -116,7 +116,7 @@ def kinds_of(grid, seed):
         (bends, mixed, random),
         (all_kinds, bends, mixed),
         (dear, wet, third),
-    ]
+    ][seed % 5 :: 5]
 
 
 def measures_of(paths, objectives):
@@ -177,7 +177,7 @@ def test_fronts_of_costs_of_moves_equal_enumeration_on_500_grids(cases, part):
 
 def test_fronts_of_short_rows_equal_enumeration(cases):
     n_cut = 0
-    for seed, grid, start, goal, paths in cases[:120]:
+    for seed, grid, start, goal, paths in cases[:60]:
         least = min(len(cells) for cells, *_ in paths)
         few = [path for path in paths if len(path[0]) <= least + 1]
         coding = CellSequence(grid, start, goal, max_cells=least + 1)
@@ -186,7 +186,7 @@ def test_fronts_of_short_rows_equal_enumeration(cases):
             found, expected = exact_front(problem), rounded_front(measures_of(few, objectives), problem.objective_names)
             np.testing.assert_allclose(found.F, expected, rtol=1e-9, atol=1e-8, err_msg=f"grid {seed}, {problem.objective_names}")
             n_cut += "with at most" in found.message
-    assert n_cut > 50
+    assert n_cut > 20
 
 
 def test_dear_moves_beside_cheap_ones_keep_every_point(cases):
@@ -248,7 +248,7 @@ def guarded(size, seed):
     return OccupancyGrid(occupied, corner_cutting=seed % 2 == 1), Ways("ten", moves=(10.0, 14.0)), Ways("guards", moves=exposure(seen))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_fronts_equal_those_of_a_plain_label_search_on_larger_grids(seed):
     size = 20 + 2 * seed
     grid, ten, guards = guarded(size, seed)
@@ -256,7 +256,7 @@ def test_fronts_equal_those_of_a_plain_label_search_on_larger_grids(seed):
     up = Ways("climb", moves=climb(draw.integers(0, 4, size=grid.shape).astype(float)))
     turning = Ways("turning", moves=(2.0, 3.0), turn_cost=1.0)
     bends = Ways("bends", turn_cost=1.0)
-    for objectives in ((ten, guards), (ten, up), (turning, guards), (turning, bends), (ten, guards, bends))[: 5 if seed < 1 else 4]:
+    for objectives in ((ten, guards), (ten, up), (turning, guards), (turning, bends), (ten, guards, bends))[seed::2]:
         problem = GridPathProblem(grid, (0, 0), (size - 1, size - 1), CellSequence(grid, (0, 0), (size - 1, size - 1), 400), objectives)
         front = exact_front(problem)
         assert front.complete and "with at most" not in front.message
@@ -270,11 +270,11 @@ def test_skipping_detours_as_for_costs_of_cells_would_lose_points(monkeypatch):
     for unfiltered in (False, True):
         if unfiltered:
             monkeypatch.setattr(Costs, "direct", property(lambda _: DIRECT))
-        for seed in range(6):
+        for seed in range(4):
             grid, ten, guards = guarded(24, seed)
             problem = GridPathProblem(grid, (0, 0), (23, 23), CellSequence(grid, (0, 0), (23, 23), 400), (ten, guards))
             (wrong if unfiltered else right).append(exact_front(problem).F.tolist())
-    assert sum(a != b for a, b in zip(right, wrong, strict=True)) >= 3
+    assert sum(a != b for a, b in zip(right, wrong, strict=True)) >= 2
 
 
 def test_what_does_not_add_up_has_no_exact_front_and_is_scored():
