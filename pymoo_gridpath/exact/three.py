@@ -78,9 +78,7 @@ class _Search:
     def _bound(self, costs: Costs, meter: Meter) -> np.ndarray:
         """Return the least cost from every state, where two costs are the same."""
         with_heading = costs.with_heading
-        found = backward_costs(
-            self.moves, costs.step, costs.field, self.goal, with_heading, stop=meter.stop, enter=costs.enter
-        )
+        found = backward_costs(self.moves, costs.step, costs.field, self.goal, with_heading, stop=meter.stop, enter=costs.enter)
         return found[0][0] if with_heading else np.repeat(found[0][0], self.n_headings)
 
     def _open_first_steps(self) -> None:

@@ -37,8 +37,11 @@ class Representation(ABC):
     grid : OccupancyGrid
     start, goal : (int, int)
         The query that it codes paths for.
+    codes_detours : bool
+        Whether a path that takes two steps where a single one leads has a code, too.
     """
 
+    codes_detours = True
     name: str
     vtype: type
     n_var: int
@@ -211,6 +214,8 @@ class MonotoneRepresentation(Representation):
     ----------
     frame : MonotoneFrame
     """
+
+    codes_detours = False
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):
         self.frame = MonotoneFrame(grid, start, goal, axis)

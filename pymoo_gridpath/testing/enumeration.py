@@ -38,9 +38,7 @@ def turn_between(before: int | None, after: int) -> int:
     return min(apart, 8 - apart)
 
 
-def enumerate_paths(
-    grid: OccupancyGrid, start: Cell, goal: Cell, headings: Iterable[int] = range(8)
-) -> list[EnumeratedPath]:
+def enumerate_paths(grid: OccupancyGrid, start: Cell, goal: Cell, headings: Iterable[int] = range(8)) -> list[EnumeratedPath]:
     """Return every legal path without a loop. Grids of more than 14 free cells take long."""
     found, headings = [], list(headings)
 
