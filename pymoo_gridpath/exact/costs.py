@@ -121,6 +121,7 @@ class Costs(NamedTuple):
         """Return the costs of some objectives, in that order."""
         order = list(order)
         enter = None if self.enter is None else self.enter[order].copy()
+        enter = enter if enter is not None and enter.any() else None
         return Costs(self.step[order].copy(), self.field[order].copy(), self.unit[order], self.off[order], enter)
 
     def values(self, points: np.ndarray) -> np.ndarray:

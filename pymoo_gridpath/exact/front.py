@@ -11,7 +11,7 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
-from pymoo_gridpath.exact.costs import Costs, integer_costs
+from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.two import Front, front_of_two
 from pymoo_gridpath.neighbourhood import HEADING_OF
@@ -88,7 +88,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     Raises
     ------
     CapabilityError
-        If there are more than three objectives or one does not add up, see `integer_costs`.
+        If there are more than three objectives, one does not add up, see `integer_costs`, or by one of them a detour may be the
+        better way and the representation codes none.
     GridPathError
         If the problem is no path problem, or a score is not the sum of what its objective says.
 
@@ -177,6 +178,7 @@ def _search(
     do: a search among the cells that are left has a finer unit, and so on. Sets of cells that were searched are not again.
     """
     costs = integer_costs(problem.objectives, problem.grid, moves, usable)
+    _check_detours(problem, costs)
     start, goal = moves.index(problem.start), moves.index(problem.goal)
     order = costs.order
     if most is not None:
@@ -199,6 +201,18 @@ def _search(
                 searched.add(key)
                 parts += _search(problem, cheap, within, meter, searched, most)
     return parts
+
+
+def _check_detours(problem, costs: Costs) -> None:
+    """Refuse costs by which a detour may be the better way, if the representation codes none."""
+    if problem.representation.codes_detours or np.array_equal(costs.direct, DIRECT):
+        return
+    k = next(k for k in range(problem.n_obj) if not np.array_equal(costs.take([k]).direct, DIRECT))
+    raise CapabilityError(
+        f"by the objective {problem.objective_names[k]!r} two steps may cost less than the one that leads to the same cell, and "
+        f"the {problem.representation.name} representation codes that one alone; expected the representation 'cells' for an "
+        f"exact front"
+    )
 
 
 def _front_of_short_paths(moves: Moves, costs: Costs, start: int, goal: int, most_steps: int, meter: Meter) -> Front:

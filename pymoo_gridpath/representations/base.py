@@ -56,6 +56,8 @@ class Representation(ABC):
         Whether its default operators are those of Ahmed and Deb (2013), `paper_operators`, rather than `path_operators`.
     monotone : bool
         Whether its paths advance along an axis, which its constructor takes as ``axis``.
+    codes_detours : bool
+        Whether a path that takes two steps where a single one leads has a code, too.
     wants_fields : bool
         Whether its constructor takes ``fields``, the costs of cells that paths are to be scored by, and ``spare``, by what
         factor paths worth coding may be longer than the cheapest, see `make_representation`.
@@ -95,6 +97,7 @@ class Representation(ABC):
     [[2, 2, 8, 8, 8, 8, 8, 8, 8]]
     """
 
+    codes_detours = True
     name: str
     vtype: type = int
     n_var: int

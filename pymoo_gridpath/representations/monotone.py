@@ -42,6 +42,7 @@ class MonotoneRepresentation(Representation):
     frame : MonotoneFrame
     """
 
+    codes_detours = False
     monotone = True
     paper = True
 

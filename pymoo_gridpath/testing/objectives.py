@@ -1,0 +1,160 @@
+"""What every objective has to keep, as tests that a class of one's own inherits."""
+
+from __future__ import annotations
+
+import itertools
+import pickle
+
+import numpy as np
+import pytest
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.optimize import minimize
+
+from pymoo_gridpath.errors import CapabilityError
+from pymoo_gridpath.exact import exact_front
+from pymoo_gridpath.fields import check_costs
+from pymoo_gridpath.grid import Box, Cell, OccupancyGrid
+from pymoo_gridpath.objectives import Objective, make_objectives, moves_of
+from pymoo_gridpath.operators import path_operators
+from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.representations import CellSequence
+from pymoo_gridpath.testing.enumeration import STEPS, enumerate_paths, non_dominated, turn_between
+
+
+class ObjectiveSuite:
+    """Tests of an objective. Inherit it, and set `objective`.
+
+    Attributes
+    ----------
+    objective : Objective
+        The one to test.
+
+    Examples
+    --------
+    In a file of tests, ``class TestMud(ObjectiveSuite): objective = Mud()``.
+    """
+
+    objective: Objective
+
+    def grids(self) -> list[OccupancyGrid]:
+        """Return the grids of the tests, of some 14 free cells at most; override it if the objective is for others."""
+        made = []
+        for seed in range(8):
+            draw = np.random.default_rng(seed)
+            occupied = draw.random((3, 4 + seed % 2)) < 0.2
+            # One way is always free.
+            occupied[0] = occupied[:, -1] = False
+            made.append(OccupancyGrid(occupied, corner_cutting=seed % 2 == 0))
+        return made
+
+    def _queries(self):
+        """Yield each grid, the problem of the objective alone from its bottom left to its top right, and all paths."""
+        for grid in self.grids():
+            start, goal = (0, 0), (grid.width - 1, grid.height - 1)
+            coding = CellSequence(grid, start, goal, max_cells=int((~grid.occupied).sum()))
+            paths = enumerate_paths(grid, start, goal)
+            yield grid, GridPathProblem(grid, start, goal, coding, [self.objective]), [path.cells for path in paths]
+
+    def test_it_has_a_name_and_a_label(self):
+        assert make_objectives(self.objective) == (self.objective,)
+        assert self.objective.name and isinstance(self.objective.label, str) and self.objective.label
+
+    def test_its_costs_are_costs(self):
+        """Of the right shape, nowhere negative, finite where paths go, the same every time, and the grid is not changed."""
+        for grid in self.grids():
+            before = grid.occupied.copy()
+            for costs in (self.objective.field, self.objective.moves):
+                first, again = costs(grid), costs(grid)
+                assert (first is None) == (again is None)
+                assert first is None or np.array_equal(np.asarray(first), np.asarray(again), equal_nan=True)
+            field = self.objective.field(grid)
+            if field is not None:
+                check_costs("the field", field, grid)
+            moves_of(self.objective, grid)
+            assert np.array_equal(grid.occupied, before)
+
+    def test_its_field_in_a_box_is_that_of_the_grid(self):
+        for grid in self.grids():
+            whole = self.objective.field(grid)
+            for box in (grid.whole, Box(1, 0, grid.width, grid.height - 1)):
+                part = self.objective.field_in(grid, box)
+                assert (part is None) == (whole is None)
+                if whole is not None and part is not None:
+                    np.testing.assert_allclose(part, np.asarray(whole)[box.slices], rtol=1e-12, atol=1e-12)
+
+    def test_a_score_is_what_it_says_of_cells_moves_and_turns(self):
+        if self.objective.combine == "sum" and not self.objective.additive:
+            pytest.skip("it scores paths by a rule of its own")
+        for grid, problem, paths in self._queries():
+            expected = [slow_score(self.objective, grid, cells) for cells in paths]
+            np.testing.assert_allclose(_scores(problem, paths), expected, rtol=1e-9, atol=1e-9)
+
+    def test_a_batch_scores_as_its_paths_alone(self):
+        for _, problem, paths in self._queries():
+            some = paths[:: max(1, len(paths) // 10)]
+            alone = [_scores(problem, [cells])[0] for cells in some]
+            np.testing.assert_array_equal(_scores(problem, some), alone)
+            assert len(problem.score(problem.decode(np.empty((0, problem.n_var), dtype=int)))) == 0
+
+    def test_paths_that_are_none_score_a_number(self):
+        for _, problem, _ in self._queries():
+            X = np.random.default_rng(1).integers(problem.xl, problem.xu, size=(20, problem.n_var), endpoint=True)
+            assert np.isfinite(problem.score(problem.decode(X))).all()
+
+    def test_it_pickles(self):
+        """As a problem does that goes to another process."""
+        for _, problem, paths in self._queries():
+            again = pickle.loads(pickle.dumps(problem))
+            np.testing.assert_array_equal(_scores(again, paths[:20]), _scores(problem, paths[:20]))
+
+    def test_it_is_shown_in_one_line(self):
+        assert repr(self.objective) and "\n" not in repr(self.objective)
+
+    def test_its_exact_fronts_are_those_of_all_paths(self):
+        for grid, _, paths in self._queries():
+            for others in ((), ("length",), ("vulnerability", "turn")):
+                if self.objective.name in others:
+                    continue
+                objectives = [self.objective, *others]
+                coding = CellSequence(grid, (0, 0), (grid.width - 1, grid.height - 1), int((~grid.occupied).sum()))
+                problem = GridPathProblem(grid, coding.start, coding.goal, coding, objectives)
+                if not self.objective.additive:
+                    with pytest.raises(CapabilityError):
+                        exact_front(problem)
+                    continue
+                rows = [[slow_score(one, grid, cells) for one in problem.objectives] for cells in paths]
+                # Sums of the same costs in another order count as the same.
+                expected = non_dominated(tuple(row) for row in np.round(rows, 9).tolist())
+                found = exact_front(problem)
+                assert found.complete and found.F.shape == expected.shape
+                np.testing.assert_allclose(found.F, expected, rtol=1e-8, atol=1e-8)
+
+    def test_it_is_minimised(self):
+        grid = self.grids()[0]
+        others = [name for name in ("length", "turn") if name != self.objective.name][:1]
+        problem = GridPathProblem(grid, (0, 0), (grid.width - 1, grid.height - 1), "cells", [self.objective, *others])
+        result = minimize(problem, NSGA2(pop_size=12, **path_operators(problem)), ("n_gen", 4), seed=1)
+        np.testing.assert_array_equal(problem.evaluate(result.X), result.F)
+        assert (problem.decode(np.atleast_2d(result.X)).interfering_cells == 0).all()
+
+
+def slow_score(objective: Objective, grid: OccupancyGrid, cells: tuple[Cell, ...]) -> float:
+    """Return what a legal path costs by what an objective says, one cell and one step after another."""
+    field, moves = objective.field(grid), objective.moves(grid)
+    visited = [] if field is None else [float(np.asarray(field)[y, x]) for x, y in cells]
+    if objective.combine != "sum":
+        return min(visited) if objective.combine == "least" else max(visited)
+    headings = [STEPS.index((b[0] - a[0], b[1] - a[1])) for a, b in itertools.pairwise(cells)]
+    steps = [] if moves is None else np.asarray(moves, dtype=float)
+    for heading, (x, y) in zip(headings, cells[1:], strict=True):
+        if moves is not None:
+            visited.append(float(steps[heading % 2] if np.ndim(steps) == 1 else steps[heading, y, x]))
+    return sum(visited) + objective.turn_cost * sum(itertools.starmap(turn_between, itertools.pairwise(headings)))
+
+
+def _scores(problem: GridPathProblem, paths) -> np.ndarray:
+    """Return the scores of paths by their cells in the one objective of a problem."""
+    rows = np.full((len(paths), problem.n_var), problem.xu[-1])
+    for row, cells in zip(rows, paths, strict=True):
+        row[: len(cells)] = [y * problem.grid.width + x for x, y in cells]
+    return problem.score(problem.decode(rows))[:, 0]
