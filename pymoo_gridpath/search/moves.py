@@ -21,7 +21,7 @@ def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 class Moves:
-    """The legal steps from each cell of a grid, or of a part of it.
+    """The legal steps from each cell of a grid, or of a part of it; what `Representation.moves` is.
 
     Cell (x, y) of the whole grid has the index ``y * width + x``, as in `OccupancyGrid.move_graph`. In a box, cells are counted
     in the same way from its own corner.
@@ -44,6 +44,17 @@ class Moves:
         forbids to cut. No bit is set in occupied cells.
     offsets : numpy.ndarray of int64, shape (8,)
         What each step adds to the index of a cell.
+
+    Examples
+    --------
+    From the middle of the bottom row, below an obstacle, there are two steps: to the right, heading 0, and to the left, 4.
+
+    >>> moves = Moves(OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 0, 0]]))
+    >>> cell = moves.index((1, 0))
+    >>> [m for m in range(8) if moves.legal[cell] >> m & 1]
+    [0, 4]
+    >>> moves.cells(cell + moves.offsets[[0, 4]]).tolist()
+    [[2, 0], [0, 0]]
     """
 
     def __init__(self, grid: OccupancyGrid, headings: Iterable[int] = range(8), box: Box | None = None):

@@ -178,7 +178,7 @@ class RepresentationSuite:
             noise = np.random.default_rng(4).uniform(-0.45, 0.45, X.shape)
             assert _same(given, coding.decode(X + noise).sequences), "real numbers do not decode as the nearest genes"
         ends = np.stack([coding.xl, coding.xu]).astype(float)
-        beyond = ends + [[-3.0], [3.0]]
+        beyond = ends + np.array([[-3.0], [3.0]])
         assert _same(coding.decode(ends).sequences, coding.decode(beyond).sequences), "genes beyond the bounds are not clipped"
         for wrong in (np.zeros((1, coding.n_var + 1)), np.full((1, coding.n_var), np.nan)):
             with pytest.raises(GridPathError):
