@@ -36,13 +36,15 @@ def want_of_memory(needs: str = "") -> str:
     return f"memory ran out{f': {needs}' if needs else ''}; expected a smaller map, coarser cells or more free memory"
 
 
-def needed(representation: str, n_cells: int, exact: bool = False, with_turn: bool = False, size: str = "") -> str:
+def needed(representation: str, monotone: bool, n_cells: int, exact: bool = False, with_turn: bool = False, size: str = "") -> str:
     """Return what a problem costs, in words.
 
     Parameters
     ----------
     representation : str
         Its name.
+    monotone : bool
+        Whether its paths advance along an axis.
     n_cells : int
         Cells that are worked on, see `OccupancyGrid.box_of`.
     exact : bool
@@ -52,7 +54,7 @@ def needed(representation: str, n_cells: int, exact: bool = False, with_turn: bo
     size : str, optional
         How to say the number of cells, such as "4000 x 4000".
     """
-    a_cell = _CELLS if representation == "cells" else _MONOTONE
+    a_cell = _MONOTONE if monotone else _CELLS
     if exact:
         a_cell = max(a_cell, _EXACT_WITH_TURN if with_turn else _EXACT)
     what = f"the exact front of a problem in {representation!r}" if exact else f"a problem in {representation!r}"

@@ -173,10 +173,12 @@ def _plan(arguments) -> int:
 def _needed(grid: OccupancyGrid, start, representation: str, arguments) -> str:
     """Return what a plan costs in memory, in words."""
     from pymoo_gridpath.memory import needed
+    from pymoo_gridpath.representations import REPRESENTATIONS
 
     height, width = grid.box_of(start).shape
     exact = (arguments.algorithm or "").lower() == "exact"
-    return needed(representation, height * width, exact, "turn" in arguments.objectives, f"{width} x {height}")
+    monotone = REPRESENTATIONS[representation].monotone
+    return needed(representation, monotone, height * width, exact, "turn" in arguments.objectives, f"{width} x {height}")
 
 
 def _searches_in_kernels(problem, algorithm) -> bool:

@@ -12,7 +12,7 @@ from pymoo_gridpath.memory import needed
 from pymoo_gridpath.study.planning.canonical import n_cells, resolve
 from pymoo_gridpath.study.planning.stored import check_plan
 from pymoo_gridpath.study.specification import own
-from pymoo_gridpath.study.specification.kinds import objective_name
+from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name
 
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
 SCHEMA = 2
@@ -223,4 +223,7 @@ def needed_for(task: Task) -> str:
     """Return what a run costs in memory, in words."""
     problem = task.problem
     turn = "turn" in map(objective_name, problem["objectives"])
-    return needed(own.shown(problem["representation"]), n_cells(problem["grid"]), is_truth(task.algorithm), turn)
+    representation = problem["representation"]
+    return needed(
+        own.shown(representation), is_monotone(representation), n_cells(problem["grid"]), is_truth(task.algorithm), turn
+    )
