@@ -36,7 +36,9 @@ def want_of_memory(needs: str = "") -> str:
     return f"memory ran out{f': {needs}' if needs else ''}; expected a smaller map, coarser cells or more free memory"
 
 
-def needed(representation: str, monotone: bool, n_cells: int, exact: bool = False, with_turn: bool = False, size: str = "") -> str:
+def needed(
+    representation: str, monotone: bool, n_cells: int, exact: bool = False, with_turn: bool = False, size: str = ""
+) -> str:
     """Return what a problem costs, in words.
 
     Parameters

@@ -107,7 +107,8 @@ def is_legal(cells, grid, start, goal):
 def walk(grid, start, goal, rng, forward=lambda step: True):
     """A random shortest path by steps for which ``forward`` holds, as a list of cells (x, y), or None if there is none."""
     steps = [(dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if (dx or dy) and forward((dx, dy))]
-    before, queue = {tuple(start): None}, [tuple(start)]
+    before: dict[tuple, tuple | None] = {tuple(start): None}
+    queue = [tuple(start)]
     for cell in queue:
         for k in rng.permutation(len(steps)):
             x, y = cell[0] + steps[k][0], cell[1] + steps[k][1]

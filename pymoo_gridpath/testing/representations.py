@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -196,7 +197,9 @@ class RepresentationSuite:
         for _ in range(8):
             via = tuple(moves.cells(rng.choice(inside)).tolist())
             for stops in ([coding.start, coding.goal], [coding.start, via, coding.goal]):
-                parts = [reference.walk(coding.grid, a, b, rng, allowed.__contains__) for a, b in itertools.pairwise(stops)]
+                parts: list[Any] = [
+                    reference.walk(coding.grid, a, b, rng, allowed.__contains__) for a, b in itertools.pairwise(stops)
+                ]
                 if all(parts):
                     found.append(np.array([parts[0][0], *(cell for part in parts for cell in part[1:])]))
         assert found, "no legal path leads along the moves of the representation"
@@ -285,7 +288,7 @@ class RepresentationSuite:
         F = []
         for _ in range(2):
             search = NSGA2(pop_size=12, **operators(problem))
-            result = minimize(problem, search, ("n_gen", 5), seed=1)
+            result: Any = minimize(problem, search, ("n_gen", 5), seed=1)
             F.append(result.F)
         assert np.array_equal(*F), "the same seed gave another result"
         paths = problem.decode(result.X)
@@ -295,16 +298,17 @@ class RepresentationSuite:
         # The paper's operators know nothing of obstacles.
         if not (operators is default_operators and coding.paper and coding.grid.n_occupied):
             assert len(legal), "no legal path was found"
-        for i in legal:
+        for i in legal.tolist():
             cells = _cells(paths, i)
             assert reference.is_legal(cells, coding.grid, coding.start, coding.goal)
             assert result.F[i, 0] == pytest.approx(reference.octile_length(cells)) and result.F[i, 2] == reference.turn(cells)
 
     def test_exact_fronts_have_rows(self, coding):
         problem = GridPathProblem(coding.grid, coding.start, coding.goal, coding)
-        X, F = problem.pareto_set(max_seconds=None), problem.pareto_front(max_seconds=None)
+        X: Any = problem.pareto_set(max_seconds=None)
+        F: Any = problem.pareto_front(max_seconds=None)
         assert X is not None and len(X) == len(F) > 0
-        assert np.array_equal(problem.evaluate(X), F)
+        assert np.array_equal(np.asarray(problem.evaluate(X)), F)
 
 
 def random_rows(coding: Representation) -> np.ndarray:
