@@ -189,7 +189,7 @@ def _algorithm(name: str, spec, problem, arguments, **more):
     """Return the algorithm or planner; of the time and of what is given besides, a planner gets what it takes."""
     from pymoo_gridpath.algorithms import make_algorithm
 
-    given = {"pop_size": arguments.pop_size or 200} if spec.takes_pop_size else {}
+    given: dict[str, Any] = {"pop_size": arguments.pop_size or 200} if spec.takes_pop_size else {}
     if isinstance(spec, type):
         more = {"max_seconds": arguments.max_seconds, **more}
         given |= {key: value for key, value in more.items() if key in spec.parameters()}

@@ -68,7 +68,7 @@ def algorithm_name(name: str, where: Where) -> str:
     except CapabilityError as error:
         raise StudyError(str(error), where) from None
     if isinstance(row, type):
-        return row.name
+        return next(known for known in PLANNERS if PLANNERS[known] is row)
     if row.unfit:
         raise StudyError(f"{row.name} {row.unfit}", where)
     if row.needs == "automated_dm":
