@@ -37,7 +37,7 @@ def want_of_memory(needs: str = "") -> str:
 
 
 def needed(
-    representation: str, monotone: bool, n_cells: int, exact: bool = False, with_turn: bool = False, size: str = ""
+    representation: str, monotone: bool, n_cells: int, whole_front: bool = False, with_turn: bool = False, size: str = ""
 ) -> str:
     """Return what a problem costs, in words.
 
@@ -49,7 +49,7 @@ def needed(
         Whether its paths advance along an axis.
     n_cells : int
         Cells that are worked on, see `OccupancyGrid.box_of`.
-    exact : bool
+    whole_front : bool
         Whether its exact front is searched.
     with_turn : bool
         Whether the turn is an objective.
@@ -57,7 +57,7 @@ def needed(
         How to say the number of cells, such as "4000 x 4000".
     """
     a_cell = _MONOTONE if monotone else _CELLS
-    if exact:
+    if whole_front:
         a_cell = max(a_cell, _EXACT_WITH_TURN if with_turn else _EXACT)
-    what = f"the exact front of a problem in {representation!r}" if exact else f"a problem in {representation!r}"
+    what = f"the exact front of a problem in {representation!r}" if whole_front else f"a problem in {representation!r}"
     return f"{what} on {size or f'{n_cells:,}'} cells needs about {max(n_cells * a_cell / 1e9, 0.1):.1f} GB"

@@ -12,7 +12,8 @@ from pymoo.core.duplicate import DuplicateElimination
 from pymoo.operators.crossover.dex import DE_REPAIRS
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.errors import CapabilityError, nearest
+from pymoo_gridpath.errors import CapabilityError
+from pymoo_gridpath.planners.signature import parameters_of
 
 # Arguments that a constructor lists, or hands on, and then sets itself or ignores.
 _EVERYWHERE = {"advance_after_initial_infill", "mating"}
@@ -48,7 +49,7 @@ MOST = 100_000
 
 
 def parameters(cls: type, name: str) -> dict[str, Any]:
-    """Return what the constructor of an algorithm takes, through all ``**kwargs`` up to its bases, with the defaults.
+    """Return what the constructor of an algorithm takes and heeds, see `parameters_of`, with the defaults.
 
     Parameters
     ----------
@@ -61,30 +62,8 @@ def parameters(cls: type, name: str) -> dict[str, Any]:
     dict
         Default by parameter; ``inspect.Parameter.empty`` where there is none.
     """
-    found: dict[str, Any] = {}
-    for base in cls.__mro__:
-        if "__init__" not in vars(base):
-            continue
-        listed = list(inspect.signature(vars(base)["__init__"]).parameters.values())[1:]
-        for item in listed:
-            if item.kind in (item.POSITIONAL_OR_KEYWORD, item.KEYWORD_ONLY):
-                found.setdefault(item.name, item.default)
-        if not any(item.kind is item.VAR_KEYWORD for item in listed):
-            break
-    return {key: value for key, value in found.items() if key not in _EVERYWHERE | _INEFFECTIVE.get(name, set())}
-
-
-def check(name: str, given, accepted) -> None:
-    """Refuse keyword arguments that an algorithm does not take.
-
-    Raises
-    ------
-    CapabilityError
-        With the nearest that it takes; pymoo itself would say nothing and go without.
-    """
-    for key in given:
-        if key not in accepted:
-            raise CapabilityError(f"{name} takes no argument {key!r}; {nearest(key, sorted(set(accepted)), 'it takes')}")
+    left_out = _EVERYWHERE | _INEFFECTIVE.get(name, set())
+    return {key: value for key, value in parameters_of(cls).items() if key not in left_out}
 
 
 def check_values(owner: str, given: dict[str, Any], accepted: dict[str, Any]) -> None:
@@ -123,10 +102,10 @@ def check_values(owner: str, given: dict[str, Any], accepted: dict[str, Any]) ->
             checks.number(key, value, expected=f"a finite number for {owner}", error=CapabilityError)
 
 
-def check_whole(owner: str, name: str, value: Any, least: int = 1, most: int | None = None) -> None:
-    """Refuse an argument of an algorithm that is no whole number, or out of its range."""
+def check_whole(owner: str, name: str, value: Any, least: int = 1, most: int | None = None) -> int:
+    """Return an argument of an algorithm if it is a whole number in its range."""
     room = f"at least {least}" if most is None else f"at least {least} and at most {most:,}"
-    checks.whole(name, value, least, most, expected=f"a whole number of {room} for {owner}", error=CapabilityError)
+    return checks.whole(name, value, least, most, expected=f"a whole number of {room} for {owner}", error=CapabilityError)
 
 
 def _check_variant(owner: str, value: Any) -> None:

@@ -26,7 +26,7 @@ class Capability:
         None: any number.
     constraints : bool
         Takes problems with constraints, ``obstacles="constraint"`` and ``"limit"``.
-    operators : bool
+    takes_operators : bool
         Takes a crossover and a mutation. The others make children by differential evolution or swarm rules of their own.
     repair : bool
         Takes the paper's edge fixing as repair.
@@ -53,6 +53,12 @@ class Capability:
         Why `make_algorithm` refuses it for every grid problem, a sentence without its subject; "" if it does not.
     note : str
         A sentence for the table.
+    deterministic : bool
+        Draws no random number, so that one run is enough.
+    reference : bool
+        Its result is the truth that others are measured against.
+    takes_pop_size : bool
+        `make_algorithm` takes a population size for it.
     """
 
     name: str
@@ -60,7 +66,7 @@ class Capability:
     min_objectives: int = 2
     max_objectives: int | None = None
     constraints: bool = True
-    operators: bool = True
+    takes_operators: bool = True
     repair: bool = True
     needs: str = ""
     dynamic: bool = False
@@ -74,6 +80,9 @@ class Capability:
     unpacks: bool = True
     unfit: str = ""
     note: str = ""
+    deterministic: bool = False
+    reference: bool = False
+    takes_pop_size: bool = True
 
     @property
     def path(self) -> str:
@@ -193,14 +202,14 @@ _ROWS = (
         + _CONSTANT.format("makes directions that are no numbers, and stands still"),
     ),
     Capability("OmniOptimizer", _MOO + "omni", min_objectives=1, note="Keeps paths that differ in genes alone."),
-    Capability("NSDE", _MOO + "nsde", operators=False, unpacks=False, note=_DE),
-    Capability("NSDER", _MOO + "nsder", operators=False, unpacks=False, needs="ref_dirs", note=_DE),
-    Capability("GDE3", _MOO + "gde3", operators=False, unpacks=False, note=_DE),
-    Capability("GDE3MNN", _MOO + "gde3", operators=False, unpacks=False, note=_DE),
+    Capability("NSDE", _MOO + "nsde", takes_operators=False, unpacks=False, note=_DE),
+    Capability("NSDER", _MOO + "nsder", takes_operators=False, unpacks=False, needs="ref_dirs", note=_DE),
+    Capability("GDE3", _MOO + "gde3", takes_operators=False, unpacks=False, note=_DE),
+    Capability("GDE3MNN", _MOO + "gde3", takes_operators=False, unpacks=False, note=_DE),
     Capability(
         "GDE32NN",
         _MOO + "gde3",
-        operators=False,
+        takes_operators=False,
         unpacks=False,
         unfit="stops with an error when a front has only one or two distinct members, as fronts on grids have",
         note="GDE3 or GDE3MNN do instead.",
@@ -208,7 +217,7 @@ _ROWS = (
     Capability(
         "GDE3PCD",
         _MOO + "gde3",
-        operators=False,
+        takes_operators=False,
         unpacks=False,
         unfit="crashes Python (in its compiled crowding) when a front has few distinct members, as fronts on grids have",
         note="GDE3 or GDE3MNN do instead.",
@@ -216,7 +225,7 @@ _ROWS = (
     Capability(
         "CMOPSO",
         _MOO + "cmopso",
-        operators=False,
+        takes_operators=False,
         unpacks=False,
         repair=False,
         whole_numbers=False,
@@ -228,7 +237,7 @@ _ROWS = (
     Capability(
         "MOPSO_CD",
         _MOO + "mopso_cd",
-        operators=False,
+        takes_operators=False,
         unpacks=False,
         repair=False,
         whole_numbers=False,
@@ -298,7 +307,7 @@ def _cells(row: Capability) -> tuple[str, ...]:
         row.name,
         objectives,
         _yes(row.constraints),
-        _yes(row.operators),
+        _yes(row.takes_operators),
         _yes(row.unpacks),
         _yes(row.repair),
         ", ".join(needs) or "nothing",

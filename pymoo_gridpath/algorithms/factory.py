@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import importlib
-import importlib.util
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from pymoo.algorithms.moo.nsde import VariantDE
 from pymoo.core.algorithm import Algorithm
+from pymoo.core.crossover import Crossover
 from pymoo.core.duplicate import NoDuplicateElimination
-from pymoo.core.problem import Problem
 from pymoo.util.reference_direction import (
     UniformReferenceDirectionFactory,
     get_number_of_uniform_points,
@@ -25,27 +22,29 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import arguments as _arguments
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.differential import WholeNumberDE
-from pymoo_gridpath.algorithms.display import PathOutput
 from pymoo_gridpath.algorithms.evaluator import ArrayEvaluator
-from pymoo_gridpath.algorithms.moead import SmoothMOEAD
+from pymoo_gridpath.algorithms.known import class_of, find_algorithm, refuse_problem
 from pymoo_gridpath.algorithms.rvea import FiniteAPDSurvival
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
-from pymoo_gridpath.errors import CapabilityError, counted
+from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
-from pymoo_gridpath.operators.mating import knows_arrays
+from pymoo_gridpath.operators.mating import mates_on_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
-from pymoo_gridpath.planners.exact import ExactFront
+from pymoo_gridpath.planners import PathOutput, Planner
+from pymoo_gridpath.planners.signature import parameters_of, refuse_unknown
 from pymoo_gridpath.problems import GridPathProblem
 
+#: Members of a population unless told.
+DEFAULT_POP_SIZE = 100
+
 _OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
-_PACKAGES = {"scikit-learn": "sklearn"}
 
 
 def make_algorithm(
     name: str,
     problem,
-    pop_size: int = 100,
+    pop_size: int | None = None,
     smoothness: bool | None = None,
     operators: Mapping[str, Any] | None = None,
     **kwargs,
@@ -55,13 +54,14 @@ def make_algorithm(
     Parameters
     ----------
     name : str
-        An algorithm of the capability table; case and punctuation do not matter: "NSGA-II", "nsga2", "MOEA/D". Or "exact",
-        for `ExactFront`, to which only ``kwargs`` matter.
+        An algorithm of the capability table, one that is registered, see `pymoo_gridpath.registry.register`, or a planner, such
+        as "exact" for `ExactFront`; case and punctuation do not matter: "NSGA-II", "nsga2", "MOEA/D".
     problem : GridPathProblem
         What it is to solve.
-    pop_size : int, default 100
-        Population size. Algorithms whose population is the set of reference directions (MOEAD, ParallelMOEAD, CTAEA) have
-        at most as many, see `reference_directions`; RNSGA3 at most as many as divide evenly among its reference points.
+    pop_size : int, optional
+        Population size, by default 100. Algorithms whose population is the set of reference directions (MOEAD, ParallelMOEAD,
+        CTAEA) have at most as many, see `reference_directions`; RNSGA3 at most as many as divide evenly among its reference
+        points. Planners that have no population refuse it.
     smoothness : bool, optional
         Whether ties are broken by total turn. By default they are where the algorithm can, unless turn is an objective of
         the problem or ``selection`` or ``survival`` is given.
@@ -97,73 +97,36 @@ def make_algorithm(
     ...
     pymoo_gridpath.errors.CapabilityError: DNSGA2 cannot solve problems with constraints; use obstacles='penalty'
     """
-    if _key(name) in ("exact", "exactfront"):
-        return ExactFront(**kwargs)
-    row = find_capability(name, getattr(problem, "n_obj", None))
+    row = find_algorithm(name, getattr(problem, "n_obj", None))
+    if not isinstance(row, Capability):
+        given = {"pop_size": pop_size, "smoothness": smoothness, "operators": operators}
+        return _planner(row, {key: value for key, value in given.items() if value is not None}, kwargs)
     refuse_problem(row, problem)
     return build(row, problem, pop_size, smoothness, operators, **kwargs)
 
 
-def find_capability(name: str, n_obj: int | None = None) -> Capability:
-    """Return the row of the capability table that a name means.
-
-    Parameters
-    ----------
-    name : str
-    n_obj : int, optional
-        Number of objectives of the problem, for the hint.
-
-    Raises
-    ------
-    CapabilityError
-        If there is none, with the nearest that suits grid problems of so many objectives.
-    """
-    rows = {_key(row.name): row for row in CAPABILITIES.values()}
-    key = _key(name)
-    if key not in rows:
-        fit = {key: row.name for key, row in rows.items() if not row.unfit and (n_obj is None or row.takes(n_obj))}
-        near = difflib.get_close_matches(key, [*fit, "exact"], n=1, cutoff=0.6)
-        hint = (
-            f"did you mean {fit.get(near[0], near[0])!r}?" if near else f"expected one of {', '.join([*fit.values(), 'exact'])}"
-        )
-        many = "" if n_obj is None else f" for {counted(n_obj, 'objective')}"
-        raise CapabilityError(f"there is no algorithm {checks.shown(name)}; {hint if near else hint + many}")
-    return rows[key]
-
-
-def _key(name: str) -> str:
-    key = re.sub(r"[^a-z0-9]", "", name.lower()) if isinstance(name, str) else ""
-    return re.sub(r"ii$", "2", re.sub(r"iii$", "3", key))
-
-
-def refuse_problem(row: Capability, problem) -> None:
-    """Raise a CapabilityError that says what an algorithm cannot do for a problem, if anything."""
-    if not isinstance(problem, Problem):
-        raise CapabilityError(f"the problem is of the class {type(problem).__name__}, expected one of pymoo: a Problem")
-    if row.unfit:
-        raise CapabilityError(f"{row.name} {row.unfit}")
-    if problem.n_obj < row.min_objectives:
-        raise CapabilityError(
-            f"{row.name} needs at least {row.min_objectives} objectives, the problem has {problem.n_obj}; use 'GA' for one"
-        )
-    if row.max_objectives is not None and problem.n_obj > row.max_objectives:
-        most = "one objective" if row.max_objectives == 1 else f"at most {row.max_objectives} objectives"
-        raise CapabilityError(f"{row.name} takes {most}, the problem has {problem.n_obj}")
-    if problem.has_constraints() and not row.constraints:
-        raise CapabilityError(f"{row.name} cannot solve problems with constraints; use obstacles='penalty'")
+def _planner(cls: type[Planner], given: dict[str, Any], kwargs: Mapping[str, Any]) -> Planner:
+    """Return a planner, with those of the arguments of `make_algorithm` that it takes."""
+    takes = {"pop_size": cls.takes_pop_size, "operators": cls.takes_operators}
+    for key in given:
+        if not takes.get(key, False):
+            raise CapabilityError(f"{cls.__name__} takes no argument {key!r}")
+    return cls(**given, **kwargs)
 
 
 def build(
     row: Capability,
     problem,
-    pop_size: int = 100,
+    pop_size: int | None = None,
     smoothness: bool | None = None,
     operators: Mapping[str, Any] | None = None,
     **kwargs,
 ) -> Algorithm:
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
-    _arguments.check_whole(row.name, "pop_size", pop_size)
-    cls = _class_of(row)
+    if pop_size is not None and not row.takes_pop_size:
+        raise CapabilityError(f"{row.name} takes no argument 'pop_size'")
+    pop_size = _arguments.check_whole(row.name, "pop_size", DEFAULT_POP_SIZE if pop_size is None else pop_size)
+    cls = class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     # These two classes need not be told: smoothness is an argument of this function.
     accepted.pop("smoothness", None)
@@ -171,14 +134,14 @@ def build(
     if operators is not None:
         if not isinstance(operators, Mapping):
             raise CapabilityError(f"operators is {checks.shown(operators)}, expected a mapping such as path_operators returns")
-        _arguments.check("operators", operators, dict.fromkeys(_OPERATORS))
+        refuse_unknown("operators", operators, dict.fromkeys(_OPERATORS))
         given.update(_fitted(row, operators, accepted))
-    _arguments.check(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
+    refuse_unknown(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
     _arguments.check_values(row.name, {key: value for key, value in given.items() if key != "smoothness"}, accepted)
-    _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(row, kwargs))
+    _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(accepted, kwargs))
     _arguments.check_whole(row.name, "pop_size", pop_size, most=_arguments.MOST)
     settings = _arguments.fresh_defaults(accepted)
-    if isinstance(problem, GridPathProblem):
+    if isinstance(problem, GridPathProblem) and "output" in accepted:
         settings["output"] = PathOutput()
     settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
     settings |= _smoothness(row, problem, smoothness, given)
@@ -190,14 +153,15 @@ def build(
         survival = settings.get("survival")
         if isinstance(survival, RankAndSmoothness):
             survival.distinct = True
-    if row.name in ("NSGA2", "SPEA2") and all(knows_arrays(given[key]) for key in _OPERATORS if key in given):
-        # The same mating several times as fast; operators from elsewhere may need pymoo's.
+    if row.name in ("NSGA2", "SPEA2") and all(mates_on_arrays(given[key]) for key in _OPERATORS[1:] if key in given):
+        # The same mating several times as fast; some operators need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
     if row.name == "OmniOptimizer" and "selection" not in given:
         settings["selection"] = NeighborTournament()
     if row.name == "RVEA" and given.get("survival") is None:
         settings["survival"] = FiniteAPDSurvival(settings["ref_dirs"], given.get("alpha", accepted["alpha"]))
-    settings.setdefault("evaluator", ArrayEvaluator())
+    if "evaluator" in accepted:
+        settings.setdefault("evaluator", ArrayEvaluator())
     termination = settings.pop("termination", None)
     algorithm = cls(**settings)
     if termination is not None:
@@ -215,9 +179,9 @@ def build(
     return algorithm
 
 
-def _least_pop_size(row: Capability, given: Mapping[str, Any]) -> int:
+def _least_pop_size(accepted: Mapping[str, Any], given: Mapping[str, Any]) -> int:
     """Return the smallest population with which an algorithm ends."""
-    if row.operators:
+    if "variant" not in accepted:
         return 1
     # Differential evolution draws distinct parents: the target, the base, and two for each difference.
     match = _arguments.VARIANT.fullmatch(given.get("variant", "DE/rand/1/bin"))
@@ -265,29 +229,25 @@ def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
     return UniformReferenceDirectionFactory(n_obj, n_partitions=n_partitions).do()
 
 
-def _class_of(row: Capability) -> type:
-    if row.name == "MOEAD":
-        return SmoothMOEAD
-    package = _PACKAGES.get(row.extra, row.extra)
-    if package and importlib.util.find_spec(package) is None:
-        raise CapabilityError(f"{row.name} needs the package {row.extra}, which is not installed: pip install {row.extra}")
-    return getattr(importlib.import_module(row.module), row.name)
-
-
 def _fitted(row: Capability, operators: Mapping[str, Any], accepted) -> dict[str, Any]:
     """Return operators without those that an algorithm does not take, and with one child a mating if it needs that."""
     fitted = {key: value for key, value in operators.items() if key in accepted or key in ("sampling", "crossover", "mutation")}
-    own = [key for key in ("crossover", "mutation") if key in fitted and not row.operators]
+    own = [key for key in ("crossover", "mutation") if key in fitted and not row.takes_operators]
     if own:
         raise CapabilityError(
             f"{row.name} takes no argument {own[0]!r}, since it makes children in a way of its own; give operators without "
             f"crossover and mutation"
         )
-    if row.one_child and knows_arrays(fitted.get("crossover")):
+    if row.one_child and _may_give_one_child(fitted.get("crossover")):
         crossover: Any = copy.copy(fitted["crossover"])
         crossover.n_offsprings = 1
         fitted["crossover"] = crossover
     return fitted
+
+
+def _may_give_one_child(crossover: Any) -> bool:
+    """Return whether the number of children is a parameter of a crossover, rather than what its class hands to pymoo's."""
+    return isinstance(crossover, Crossover) and "n_offsprings" in parameters_of(type(crossover), below=Crossover)
 
 
 def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, Any]:

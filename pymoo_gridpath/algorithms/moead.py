@@ -14,7 +14,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.arguments import check_whole
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators.array_population import ArrayPopulation
-from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection, knows_arrays
+from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection, mates_on_arrays
 from pymoo_gridpath.operators.parameters import number
 from pymoo_gridpath.operators.survival import turns_of
 
@@ -71,8 +71,8 @@ class SmoothMOEAD(MOEAD):
     and evaluation work on many rows at once, and final hypervolumes were no worse by paired tests with 2 and 3 objectives, with
     the paper's operators and with path-aware ones; ``benchmarks/fast_generation.py`` repeats them as algorithm MOEAD/1.
 
-    Operators of this package are called by their array hook (`FirstChildMating`), others, and all if one of crossover, mutation
-    and repair is from elsewhere, through pymoo's mating.
+    Crossover, mutation and repair are called by their array hook (`FirstChildMating`), or all through pymoo's mating if one of
+    them does more than that says, see `mates_on_arrays`.
 
     Unlike pymoo's own, mating is told the algorithm, so that mutation rates that follow the run do. As there, each mating
     gives one child. Between batches it can be copied and pickled.
@@ -120,7 +120,7 @@ class SmoothMOEAD(MOEAD):
         # Subproblems, by batches, that are still to have a child in this generation.
         self._batches: list[np.ndarray] = []
         operators = self.mating.crossover, self.mating.mutation, self.mating.repair
-        if "mating" not in kwargs and all(map(knows_arrays, operators)):
+        if "mating" not in kwargs and all(map(mates_on_arrays, operators)):
             self.selection = NeighborSelection(number(self.selection.prob))
             self.mating = FirstChildMating(self.selection, *operators)
 

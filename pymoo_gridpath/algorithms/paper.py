@@ -16,6 +16,9 @@ from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem
 
+#: Members of a population, generations of a run, and what an interfering cell adds to every objective, in the paper.
+POP_SIZE, N_GEN, PENALTY = 500, 500, 1.0
+
 
 class Setup(NamedTuple):
     """What `pymoo.optimize.minimize` takes, in its order.
@@ -38,8 +41,8 @@ def ahmed_deb_2013(
     goal: Sequence[int],
     representation: str = "integer",
     objectives: Sequence[str | Objective] | str = ("length", "vulnerability"),
-    pop_size: int = 500,
-    n_gen: int = 500,
+    pop_size: int = POP_SIZE,
+    n_gen: int = N_GEN,
     penalty: float | None = None,
     termination: Termination | None = None,
     **problem_options,
@@ -97,7 +100,7 @@ def ahmed_deb_2013(
     if len(made) == 1:
         problem_options.setdefault("obstacles", "constraint")
     if penalty is None and problem_options.get("obstacles", "penalty") == "penalty":
-        penalty = 1.0
+        penalty = PENALTY
     problem = GridPathProblem(grid, start, goal, representation, made, penalty=penalty, **problem_options)
     if len(made) == 1:
         algorithm = make_algorithm("GA", problem, pop_size, operators=paper_operators(problem, eta_crossover=2.0))

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def add_plan_command(commands) -> None:
     search.add_argument(
         "--algorithm",
         metavar="NAME",
-        help="nsga2, spea2, moead, ...; exact for the whole front (default: nsga2; ga for one objective)",
+        help="an algorithm or planner: nsga2, spea2, moead, ... (default: nsga2; ga for one objective)",
     )
     search.add_argument(
         "--representation",
@@ -66,9 +66,7 @@ def add_plan_command(commands) -> None:
     search.add_argument("--pop-size", type=positive, metavar="N", help="population size (default: 200)")
     search.add_argument("--generations", type=positive, metavar="N", help="generations of a run (default: 200)")
     search.add_argument("--runs", type=positive, metavar="N", help="runs that are merged into one front (default: 1)")
-    search.add_argument(
-        "--max-seconds", type=float, metavar="S", help="time for --algorithm exact; what it has found by then is kept"
-    )
+    search.add_argument("--max-seconds", type=float, metavar="S", help="time of a planner; what it has found by then is kept")
     search.add_argument("--seed", type=natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
     plan.add_argument(
         "-o",
@@ -84,7 +82,7 @@ def add_plan_command(commands) -> None:
 def _plan(arguments) -> int:
     """Plan paths from a start to a goal, print the trade-off table, and write figures and files."""
     # Imported late, since `maps`, `info` and --help do without.
-    from pymoo_gridpath.algorithms import ExactFront, make_algorithm
+    from pymoo_gridpath.algorithms import find_algorithm
     from pymoo_gridpath.compiled import COMPILED
     from pymoo_gridpath.convergence import ConvergenceRecorder
     from pymoo_gridpath.decision.provenance import describe_source
@@ -103,7 +101,10 @@ def _plan(arguments) -> int:
     grid = grid.inflate(arguments.radius)
     check_grown(grid, arguments.radius, start, goal)
     representation = arguments.representation or default_representation(grid.corner_cutting, arguments.axis)
-    arguments.needs = _needed(grid, start, representation, arguments)
+    name = arguments.algorithm or ("nsga2" if len(arguments.objectives) > 1 else "ga")
+    spec = find_algorithm(name, len(arguments.objectives))
+    _settle_options(spec, name, arguments)
+    arguments.needs = _needed(grid, start, representation, arguments, spec.reference)
     problem = GridPathProblem(
         grid,
         start,
@@ -115,18 +116,8 @@ def _plan(arguments) -> int:
         potential_limit=arguments.potential_limit,
         axis=arguments.axis,
     )
-    name = arguments.algorithm or ("nsga2" if problem.n_obj > 1 else "ga")
-    algorithm = make_algorithm(name, problem, pop_size=arguments.pop_size or 200)
-    if isinstance(algorithm, ExactFront):
-        for option in ("pop_size", "generations", "runs"):
-            if getattr(arguments, option) is not None:
-                raise GridPathError(
-                    f"--{option.replace('_', '-')} is not for --algorithm exact, which finds the whole front at once"
-                )
-    arguments.generations, arguments.runs = arguments.generations or 200, arguments.runs or 1
-    if arguments.max_seconds is not None and not isinstance(algorithm, ExactFront):
-        raise GridPathError(f"--max-seconds is for --algorithm exact, not for {name}; expected --generations instead")
-    if not COMPILED and _searches_in_kernels(problem, algorithm):
+    algorithm = _algorithm(name, spec, problem, arguments)
+    if not COMPILED and (isinstance(spec, type) or not problem.representation.paper):
         print(
             "numba is not installed, so the search runs as plain Python, many times slower; pip install 'pymoo_gridpath[fast]'",
             file=sys.stderr,
@@ -137,7 +128,7 @@ def _plan(arguments) -> int:
     if unknown is not None:
         print(f"unknown: {unknown}", flush=True)
     with _StopOnCtrlC() as stop:
-        results = _search(problem, algorithm, arguments, stop)
+        results = _search(problem, name, spec, algorithm, arguments, stop)
         stop.searching = False
         if not any(len(result.pop) for result in results):
             say(f"no path was found: {results[0].message}")
@@ -170,27 +161,47 @@ def _plan(arguments) -> int:
 # -- parts ---------------------------------------------------------------------------------------------------------------
 
 
-def _needed(grid: OccupancyGrid, start, representation: str, arguments) -> str:
+def _needed(grid: OccupancyGrid, start, representation: str, arguments, whole_front: bool) -> str:
     """Return what a plan costs in memory, in words."""
     from pymoo_gridpath.memory import needed
     from pymoo_gridpath.representations import REPRESENTATIONS
 
     height, width = grid.box_of(start).shape
-    exact = (arguments.algorithm or "").lower() == "exact"
     monotone = REPRESENTATIONS[representation].monotone
-    return needed(representation, monotone, height * width, exact, "turn" in arguments.objectives, f"{width} x {height}")
+    cells, turn = f"{width} x {height}", "turn" in arguments.objectives
+    return needed(representation, monotone, height * width, whole_front, turn, cells)
 
 
-def _searches_in_kernels(problem, algorithm) -> bool:
-    """Return whether a search spends its time in kernels that numba compiles."""
-    from pymoo_gridpath.algorithms import ExactFront
+def _settle_options(spec, name: str, arguments) -> None:
+    """Refuse options that an algorithm or planner does not take, and fill in the others."""
+    is_planner = isinstance(spec, type)
+    takes = {
+        "pop_size": spec.takes_pop_size,
+        "generations": not is_planner,
+        "runs": not spec.deterministic,
+        "max_seconds": is_planner and "max_seconds" in spec.parameters(),
+    }
+    for option, taken in takes.items():
+        if getattr(arguments, option) is not None and not taken:
+            why = "a planner that takes none" if is_planner else "which takes --generations"
+            raise GridPathError(f"--{option.replace('_', '-')} is not for --algorithm {name}, {why}")
+    arguments.generations, arguments.runs = arguments.generations or 200, arguments.runs or 1
 
-    return isinstance(algorithm, ExactFront) or not problem.representation.paper
+
+def _algorithm(name: str, spec, problem, arguments, **more):
+    """Return the algorithm or planner; of the time and of what is given besides, a planner gets what it takes."""
+    from pymoo_gridpath.algorithms import make_algorithm
+
+    given: dict[str, Any] = {"pop_size": arguments.pop_size or 200} if spec.takes_pop_size else {}
+    if isinstance(spec, type):
+        more = {"max_seconds": arguments.max_seconds, **more}
+        given |= {key: value for key, value in more.items() if key in spec.parameters()}
+    return make_algorithm(name, problem, **given)
 
 
-def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
+def _search(problem, name: str, spec, algorithm, arguments, stop: _StopOnCtrlC) -> list:
     """Return the Results of the runs, with progress shown, ended early if Ctrl-C asks for it."""
-    from pymoo_gridpath.algorithms import ExactFront, minimize_runs
+    from pymoo_gridpath.algorithms import minimize_runs
     from pymoo_gridpath.convergence import ConvergenceRecorder
 
     def observe(run, algorithm):
@@ -202,9 +213,9 @@ def _search(problem, algorithm, arguments, stop: _StopOnCtrlC) -> list:
         return stop.requested
 
     with Progress(arguments.runs, arguments.generations) as progress:
-        if isinstance(algorithm, ExactFront):
-            algorithm = ExactFront(max_seconds=arguments.max_seconds, watch=watch)
-            return minimize_runs(problem, algorithm, n_runs=1, seed=arguments.seed)
+        if isinstance(spec, type):
+            planner = _algorithm(name, spec, problem, arguments, watch=watch)
+            return minimize_runs(problem, planner, n_runs=arguments.runs, seed=arguments.seed)
         termination = ("n_gen", arguments.generations)
         return minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.exact import ExactResult
 from pymoo_gridpath.grid import OccupancyGrid
 
 
@@ -55,7 +54,8 @@ def describe_problem(problem) -> dict:
 def describe_run(result) -> dict:
     """Return the algorithm of a pymoo Result, its parameters, operators, generations, evaluations and seed.
 
-    What the Result does not tell is None. Of an exact search, also whether the front is complete, how it ended, and its budget.
+    What the Result does not tell is None. Of a planner, also whether it is
+    complete, how it ended, and the budget that it had.
     """
     algorithm = getattr(result, "algorithm", None)
     iterations = getattr(algorithm, "n_iter", None)
@@ -75,7 +75,7 @@ def describe_run(result) -> dict:
         "generations": None if iterations is None else iterations - 1,
         "evaluations": getattr(getattr(algorithm, "evaluator", None), "n_eval", None),
         "seed": getattr(algorithm, "seed", None),
-        **_search(algorithm),
+        **_search(result, algorithm),
         "operators": {
             role: {"name": type(operator).__name__, **_scalars(operator)}
             for role, operator in operators.items()
@@ -84,12 +84,16 @@ def describe_run(result) -> dict:
     }
 
 
-def _search(algorithm) -> dict:
-    """Return how an exact search ended and the budget that it had, nothing of other algorithms."""
-    found = getattr(algorithm, "found", None)
-    if not isinstance(found, ExactResult):
+def _search(result, algorithm) -> dict:
+    """Return how a planner ended and the budget that it had, nothing of other algorithms: their Results tell of no success."""
+    success = getattr(result, "success", None)
+    if not isinstance(success, bool):
         return {}
-    return {"complete": found.complete, "message": found.message, "budget": _scalars(getattr(algorithm, "budget", None))}
+    return {
+        "complete": success,
+        "message": getattr(result, "message", ""),
+        "budget": _scalars(getattr(algorithm, "budget", None)),
+    }
 
 
 def plain(value) -> Any:

@@ -13,6 +13,9 @@ class RowDuplicates(DuplicateElimination):
     O(N**2) time.
     """
 
+    # Mating on arrays compares rows, too.
+    arrays = True
+
     def _do(self, pop, other, is_duplicate):
         seen = set() if other is None else set(row_keys(other.get("X")))
         for k, key in enumerate(row_keys(pop.get("X"))):

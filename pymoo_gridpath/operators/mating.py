@@ -6,7 +6,12 @@ import math
 
 import numpy as np
 from pymoo.algorithms.moo.moead import NeighborhoodSelection
+from pymoo.core.crossover import Crossover
+from pymoo.core.duplicate import DuplicateElimination
 from pymoo.core.mating import Mating
+from pymoo.core.mutation import Mutation
+from pymoo.core.operator import Operator
+from pymoo.core.repair import Repair
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.array_population import ArrayPopulation
@@ -21,8 +26,9 @@ class ArrayMating(Mating):
     """Selection, crossover, mutation, repair and duplicate elimination on one array of genes.
 
     Pass it as ``mating=`` to any algorithm derived from pymoo's ``GeneticAlgorithm``. Operators are called by the hook
-    that every pymoo operator has (``_do``, on arrays), and their probabilities mean what they mean in pymoo. Children
-    equal to a member of the population or to one another are always left out; mating goes on until there are enough.
+    that every pymoo operator has (``_do``, on arrays), and their probabilities mean what they mean in pymoo; as there,
+    children of a crossover have the type of their parents. Children equal to a member of the population or to one another are
+    always left out; mating goes on until there are enough. `mates_on_arrays` says of which operators that is all they do.
 
     Parameters
     ----------
@@ -71,14 +77,16 @@ class ArrayMating(Mating):
         """Return the children of pairs of parents, shape (2, n_matings, n_var), as rows."""
         n = self.crossover.n_offsprings
         crossed = random_state.random(X.shape[1]) < number(self.crossover.prob)
-        children = self.crossover._do(problem, X, random_state=random_state, **kwargs)
-        children[:, ~crossed] = X[:n, ~crossed]
+        children = self.crossover._do(problem, X, random_state=random_state, **kwargs).astype(X.dtype, copy=False)
+        children[:, ~crossed] = X[np.arange(n) % len(X)][:, ~crossed]
         return children.reshape(-1, X.shape[-1])
 
     def _mutate(self, problem, X, random_state, kwargs):
         mutated = random_state.random(len(X)) <= number(self.mutation.prob)
+        # Some mutate the array that they are given.
+        before = X if mutated.all() else X.copy()
         children = self.mutation._do(problem, X, random_state=random_state, **kwargs)
-        return children if mutated.all() else np.where(mutated[:, None], children, X)
+        return children if mutated.all() else np.where(mutated[:, None], children, before)
 
 
 class NeighborSelection(NeighborhoodSelection):
@@ -121,13 +129,30 @@ class FirstChildMating(ArrayMating):
         return ArrayPopulation.of(self.repair._do(problem, children, random_state=random_state, **kwargs))
 
 
-def knows_arrays(operator) -> bool:
-    """Return whether an operator does all it does in ``_do``, as this package's own; others may need pymoo's mating.
+# Whose ``do`` mating on arrays stands in for.
+_CALLED_AS_ARRAYS = (Crossover, Mutation, Repair)
 
-    So does one that was given a repair or type of genes of its own, which pymoo heeds outside of ``_do``.
+# What mating on arrays does without: where a class has its own, an operator does more than its array hook says.
+_HOOKS = {DuplicateElimination: ("do", "_do"), Operator: ("do", "__call__")}
+
+
+def mates_on_arrays(operator) -> bool:
+    """Return whether mating on arrays gives what pymoo's mating of individuals would give with an operator.
+
+    An operator can say so by a class attribute ``arrays``, True or False, which holds for classes derived from it until one
+    overrides what mating on arrays leaves out. Without it, operators mate on arrays unless they override pymoo's ``do``, and
+    so do most of pymoo's own; `DuplicateElimination` does not, since mating on arrays compares rows. One that was given a
+    repair or type of genes of its own does not either: pymoo heeds them outside of the array hook ``_do``.
     """
-    more = getattr(operator, "repair", None), getattr(operator, "vtype", None)
-    return type(operator).__module__.startswith("pymoo_gridpath.") and more == (None, None)
+    kind, hooks = next(((kind, hooks) for kind, hooks in _HOOKS.items() if isinstance(operator, kind)), (None, ()))
+    if kind is None or getattr(operator, "repair", None) is not None or getattr(operator, "vtype", None) is not None:
+        return False
+    for cls in type(operator).__mro__:
+        if "arrays" in vars(cls):
+            return bool(vars(cls)["arrays"])
+        if any(hook in vars(cls) for hook in hooks):
+            return cls in _CALLED_AS_ARRAYS
+    return False
 
 
 def _unseen(X: np.ndarray, seen: set[bytes]) -> np.ndarray:

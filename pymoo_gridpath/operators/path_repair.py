@@ -17,6 +17,9 @@ class PathRepair(Repair):
     `PathMutation` need no repair; those of operators that know nothing of paths do.
     """
 
+    # Whoever has such a repair need not be told that other operators know nothing of paths.
+    knows_paths = True
+
     def _do(self, problem, X, random_state=None, **kwargs):
         assert random_state is not None
         representation, terrain = representation_of(problem), terrain_of(problem)

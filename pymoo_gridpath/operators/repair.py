@@ -20,6 +20,9 @@ class EdgeFixing(Repair):
     Ahmed and Deb (2013), section 2.1.
     """
 
+    # Whoever has such a repair need not be told that other operators know nothing of paths.
+    knows_paths = True
+
     def _do(self, problem, X, random_state=None, **kwargs):
         assert random_state is not None
         return representation_of(problem).repair(X, random_state)

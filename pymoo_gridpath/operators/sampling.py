@@ -16,6 +16,9 @@ class RandomSampling(Sampling):
     The paper initialises its population randomly (section 5); `EdgeFixing` then brings paths that leave the grid back to it.
     """
 
+    # Of the codings of the paper every row is a path, legal or not.
+    knows_paths = True
+
     def _do(self, problem, n_samples, *args, random_state=None, **kwargs):
         assert random_state is not None
         if problem.vtype is None or np.dtype(problem.vtype).kind not in "iub" or problem.xl is None or problem.xu is None:

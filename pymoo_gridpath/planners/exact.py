@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-import inspect
 from collections.abc import Callable
-from typing import Any
 
-from pymoo.core.algorithm import Algorithm
-from pymoo.core.population import Population
-
-from pymoo_gridpath.algorithms.arguments import check
-from pymoo_gridpath.algorithms.display import PathOutput
 from pymoo_gridpath.exact import Budget, exact_front
 from pymoo_gridpath.exact.budget import Meter
+from pymoo_gridpath.planners.base import Plan, Planner
+from pymoo_gridpath.registry import register
 
 
-class ExactFront(Algorithm):
+@register
+class ExactFront(Planner):
     """Find the whole Pareto front of a path problem in one step.
 
     ``minimize(problem, ExactFront())`` returns a Result that holds every point of the front of the legal paths, each once,
@@ -60,8 +56,8 @@ class ExactFront(Algorithm):
     ([[4.83, 0.88], [5.41, 0.66]], 'all 2 points found')
     """
 
-    # pymoo fills it when the run begins.
-    termination: Any
+    name = "exact"
+    reference = True
 
     def __init__(
         self,
@@ -71,25 +67,10 @@ class ExactFront(Algorithm):
         watch: Callable[[Meter], bool] | None = None,
         **kwargs,
     ):
-        own = ("max_seconds", "max_labels", "max_memory", "watch")
-        check("ExactFront", kwargs, dict.fromkeys((*inspect.signature(Algorithm).parameters, *own)))
-        # It is the front that others are measured against.
-        super().__init__(output=kwargs.pop("output", PathOutput(distance=False)), **kwargs)
+        super().__init__(**kwargs)
         self.budget = Budget(max_seconds, max_labels, max_memory, watch)
 
-    def _initialize_infill(self):
-        self.found = exact_front(self.problem, self.budget)
+    def plan(self, problem) -> Plan:
+        self.found = exact_front(problem, self.budget)
         self.budget = dataclasses.replace(self.budget, watch=None)
-        return Population.new("X", self.found.X)
-
-    def _initialize_advance(self, infills=None, **kwargs):
-        self.termination.terminate()
-
-    def _set_optimum(self):
-        # All of them: pymoo's filter would compare every path with every other.
-        self.opt = self.pop
-
-    def result(self):
-        result: Any = super().result()
-        result.success, result.message = self.found.complete, self.found.message
-        return result
+        return Plan(self.found.X, self.found.complete, self.found.message)

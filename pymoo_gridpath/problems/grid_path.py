@@ -27,9 +27,6 @@ DEFAULT_PENALTY = 2.0
 # How long pareto_front() may take unless told, since pymoo asks for it unbidden.
 PARETO_SECONDS = 2.0
 
-# Where the operators are that pymoo brings: for real numbers, bits and permutations.
-_OPERATORS_OF_PYMOO = "pymoo.operators."
-
 # Sums of the same costs in another order differ by no more than this share of themselves.
 _ROUNDING = 1e-12
 
@@ -311,8 +308,8 @@ class GridPathProblem(Problem):
         """Warn, once, of genes or generations that come of operators which know nothing of paths."""
         if X.dtype.kind == "f" and (np.rint(X) != X).any():
             what = "genes that are no whole numbers, as operators for real numbers make them, hardly ever code a legal path"
-        elif (name := _maker_of_pymoo(algorithm)) and len(interfering) and interfering.all():
-            what = f"there is no legal path among {len(X)} of pymoo's {name}, which knows nothing of paths"
+        elif (name := _maker_without_repair(algorithm)) and len(interfering) and interfering.all():
+            what = f"there is no legal path among {len(X)} of {name}, and the algorithm has no repair that knows paths"
         else:
             return
         self._warned_of_operators = True
@@ -328,12 +325,15 @@ class GridPathProblem(Problem):
         return self.score(paths), paths.turn, paths.interfering_cells
 
 
-def _maker_of_pymoo(algorithm) -> str:
-    """Return the name of the operator that made the rows under evaluation if it is one that pymoo brings, else nothing."""
-    if algorithm is None:
+def _maker_without_repair(algorithm) -> str:
+    """Return the name of the operator that made the rows under evaluation if no repair that knows paths came after it.
+
+    A repair says that it knows paths by a class attribute, as `EdgeFixing` and `PathRepair` do.
+    """
+    if algorithm is None or getattr(getattr(algorithm, "repair", None), "knows_paths", False):
         return ""
     if getattr(algorithm, "is_initialized", False):
         maker = getattr(getattr(algorithm, "mating", None), "crossover", None)
     else:
         maker = getattr(getattr(algorithm, "initialization", None), "sampling", None)
-    return type(maker).__name__ if type(maker).__module__.startswith(_OPERATORS_OF_PYMOO) else ""
+    return "" if maker is None or getattr(maker, "knows_paths", False) else type(maker).__name__

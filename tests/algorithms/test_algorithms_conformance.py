@@ -19,7 +19,8 @@ from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_func
 from pymoo.optimize import minimize
 
 from pymoo_gridpath.algorithms import CAPABILITIES, capability_table, make_algorithm, reference_directions
-from pymoo_gridpath.algorithms.factory import _PACKAGES, build
+from pymoo_gridpath.algorithms.factory import build
+from pymoo_gridpath.algorithms.known import _PACKAGES
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import default_operators, paper_operators, path_operators
 
@@ -109,7 +110,9 @@ def check_pickles(row, result):
             pickle.dumps(result.algorithm)
 
 
-@pytest.mark.parametrize("row", named(row for row in USABLE if not row.operators or row.name in ("NSGA3", "CTAEA", "DNSGA2")))
+@pytest.mark.parametrize(
+    "row", named(row for row in USABLE if not row.takes_operators or row.name in ("NSGA3", "CTAEA", "DNSGA2"))
+)
 def test_bits_stay_bits(row, make_problem, arguments):
     problem = make_problem(2, representation="binary")
     result = solve(problem, make_algorithm(row.name, problem, POP_SIZE, **arguments(row, 2)))
@@ -134,7 +137,7 @@ def test_operators_that_the_table_names_are_called(row, make_problem, arguments)
         operator._do = do
         return operator
 
-    names = ["repair"] + (["crossover", "mutation"] if row.operators else [])
+    names = ["repair"] + (["crossover", "mutation"] if row.takes_operators else [])
     if row.one_child:
         operators["crossover"].n_offsprings = 1
     spies = {name: spy(name, operators[name]) for name in names}
@@ -167,12 +170,12 @@ def test_pymoos_own_constructors_unpack_operators_where_the_table_says(row, make
     else:
         with pytest.raises(TypeError, match="eliminate_duplicates"):
             cls(**operators, **kwargs)
-    if row.operators:
+    if row.takes_operators:
         # As the documentation of the operators says.
         assert make_algorithm(row.name, problem, operators=make(problem), **arguments(row, n_obj)) is not None
 
 
-@pytest.mark.parametrize("row", named(row for row in USABLE if not row.operators))
+@pytest.mark.parametrize("row", named(row for row in USABLE if not row.takes_operators))
 def test_operators_that_an_algorithm_would_ignore_are_refused(row, make_problem):
     problem = make_problem()
     with pytest.raises(CapabilityError, match=f"{row.name} takes no argument 'crossover', since it makes"):

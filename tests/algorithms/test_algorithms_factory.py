@@ -9,14 +9,27 @@ import pytest
 from pymoo.algorithms.moo.moead import ParallelMOEAD
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.core.mating import Mating
+from pymoo.operators.crossover import pntx
+from pymoo.operators.crossover.sbx import SBX
+from pymoo.operators.mutation.nom import NoMutation
+from pymoo.operators.mutation.pm import PM
+from pymoo.operators.repair.rounding import RoundingRepair
+from pymoo.operators.sampling.rnd import IntegerRandomSampling
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 from pymoo.optimize import minimize
 
 from pymoo_gridpath.algorithms import CAPABILITIES, StrengthAndSmoothness, make_algorithm, reference_directions
 from pymoo_gridpath.algorithms.arguments import parameters
-from pymoo_gridpath.algorithms.factory import _class_of
+from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.operators import ArrayMating, DiscreteSBX, RankAndSmoothness, SmoothnessTournament
+from pymoo_gridpath.operators import (
+    ArrayMating,
+    DiscreteSBX,
+    RankAndSmoothness,
+    RowDuplicates,
+    SmoothnessTournament,
+    TwoPointCrossover,
+)
 
 
 @pytest.mark.parametrize(
@@ -81,7 +94,9 @@ def test_unknown_name(name, near, make_problem):
         ("MOEAD", {"prob_neighbor_mating": math.nan}, "prob_neighbor_mating is nan, expected a number from 0 to 1 for MOEAD"),
         ("NSGA2", {"pop_size": True}, "pop_size is True, expected a whole number"),
         ("NSGA2", {"pop_size": np.True_}, "pop_size is True, expected a whole number"),
-        ("NSGA2", {"pop_size": None}, "pop_size is None, expected a whole number"),
+        ("exact", {"pop_size": 20}, "ExactFront takes no argument 'pop_size'"),
+        ("exact", {"smoothness": False}, "ExactFront takes no argument 'smoothness'"),
+        ("exact", {"operators": {}}, "ExactFront takes no argument 'operators'"),
         ("NSGA2", {"pop_size": 10**400}, "pop_size is a whole number of about 401 digits, expected a whole number of"),
         ("NSGA2", {"n_offsprings": math.inf}, "n_offsprings is inf, expected a whole number"),
         ("NSGA2", {"eliminate_duplicates": 3}, "eliminate_duplicates is 3, expected True, False or a Dup"),
@@ -225,7 +240,7 @@ def test_every_accepted_argument_is_taken(name, make_problem, arguments):
     n_obj = row.max_objectives or 2
     problem, kwargs = make_problem(n_obj), arguments(row, n_obj)
     model = make_algorithm(name, problem, 20, **kwargs)
-    for key, default in parameters(_class_of(row), name).items():
+    for key, default in parameters(class_of(row), name).items():
         if key in ("pop_size", "smoothness", *kwargs) or isinstance(default, type):
             continue
         value = {"ref_dirs": np.eye(n_obj), "crossover": getattr(model.mating, "crossover", None)}.get(key, default)
@@ -240,17 +255,54 @@ def test_termination_and_seed_reach_the_run(make_problem):
     assert np.array_equal(result.pop.get("X"), again.pop.get("X"))
 
 
-class FromElsewhere(DiscreteSBX):
-    """An operator that another package might bring."""
+class Derived(DiscreteSBX):
+    """What another package might make of an operator of this one."""
 
 
-def test_operators_from_elsewhere_get_pymoos_mating(make_problem):
+class OwnDo(DiscreteSBX):
+    def do(self, problem, pop, parents=None, *args, **kwargs):
+        return super().do(problem, pop, parents, *args, **kwargs)
+
+
+class Closest(RowDuplicates):
+    def _do(self, pop, other, is_duplicate):
+        return super()._do(pop, other, is_duplicate)
+
+
+def test_operators_that_override_pymoos_do_get_pymoos_mating(make_problem):
     problem = make_problem()
-    crossover = FromElsewhere(5.0)
-    assert isinstance(make_algorithm("NSGA2", problem).mating, ArrayMating)
-    assert isinstance(make_algorithm("NSGA2", problem, crossover=DiscreteSBX(5.0)).mating, ArrayMating)
-    given = make_algorithm("NSGA2", problem, crossover=crossover)
-    assert type(given.mating) is Mating and given.mating.crossover is crossover
+    for given in ({}, {"crossover": Derived(5.0)}, {"crossover": SBX()}, {"sampling": IntegerRandomSampling()}):
+        assert isinstance(make_algorithm("NSGA2", problem, **given).mating, ArrayMating)
+    for given in (
+        {"crossover": OwnDo(5.0)},
+        {"crossover": Derived(5.0, repair=RoundingRepair())},
+        {"mutation": PM(vtype=float)},
+        {"mutation": NoMutation()},
+        {"eliminate_duplicates": Closest()},
+        {"eliminate_duplicates": False},
+    ):
+        mating = make_algorithm("NSGA2", problem, **given).mating
+        assert type(mating) is Mating
+        assert all(getattr(mating, key) is value for key, value in given.items() if value)
+
+
+@pytest.mark.parametrize("name", ["NSGA2", "SPEA2", "MOEAD"])
+def test_a_derived_operator_gives_the_same_bits(name, make_problem):
+    problem = make_problem()
+    own, derived = (
+        minimize(problem, make_algorithm(name, problem, 20, crossover=cls(5.0)), ("n_gen", 5), seed=1).pop.get("X")
+        for cls in (DiscreteSBX, Derived)
+    )
+    assert np.array_equal(own, derived)
+
+
+def test_only_crossovers_that_can_are_told_to_give_one_child(make_problem):
+    problem = make_problem()
+    for crossover in (DiscreteSBX(), Derived(), TwoPointCrossover(), SBX()):
+        algorithm = make_algorithm("CTAEA", problem, operators={"crossover": crossover})
+        assert algorithm.mating.crossover.n_offsprings == 1 and crossover.n_offsprings == 2
+    with pytest.raises(CapabilityError, match="CTAEA needs a crossover that gives one child"):
+        make_algorithm("CTAEA", problem, operators={"crossover": pntx.TwoPointCrossover()})
 
 
 def test_differential_evolution_keeps_its_settings(make_problem):

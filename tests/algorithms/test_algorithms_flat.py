@@ -15,7 +15,7 @@ from pymoo.optimize import minimize
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import CAPABILITIES, StrengthAndSmoothness, make_algorithm, reference_directions
-from pymoo_gridpath.algorithms.factory import _PACKAGES
+from pymoo_gridpath.algorithms.known import _PACKAGES
 from pymoo_gridpath.algorithms.rvea import FiniteAPDSurvival
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival
 from pymoo_gridpath.objectives import Objective

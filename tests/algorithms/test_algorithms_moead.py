@@ -158,7 +158,8 @@ def test_children_of_a_batch_replace_one_after_another(seed, make_problem):
 def test_without_its_additions_it_is_pymoos(decomposition):
     """One child at a time, no scaling, no limit, and no ties of neighbours or of children: the same bits."""
     dirs = np.random.default_rng(1).dirichlet(np.ones(3), 15)
-    operators = {"crossover": SBX(eta=15, prob=1.0), "mutation": PM(eta=20, prob_var=1.0)}
+    # With a type of genes of their own, operators go pymoo's way in both.
+    operators = {"crossover": SBX(eta=15, prob=1.0, vtype=float), "mutation": PM(eta=20, prob_var=1.0, vtype=float)}
     settings: dict[str, Any] = {"n_neighbors": 6, "decomposition": decomposition} | operators
     ours = SmoothMOEAD(dirs, smoothness=False, normalize=False, n_replace=6, batch_size=1, **settings)
     results = [minimize(DTLZ2(n_var=6), algorithm, ("n_gen", 12), seed=1) for algorithm in (ours, MOEAD(dirs, **settings))]

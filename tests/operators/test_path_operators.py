@@ -293,7 +293,9 @@ def test_nothing_is_kept_on_problems_and_operators():
 
 
 ROWS = [
-    row for row in CAPABILITIES.values() if row.operators and not row.unfit and not row.needs.startswith(("ref_points", "auto"))
+    row
+    for row in CAPABILITIES.values()
+    if row.takes_operators and not row.unfit and not row.needs.startswith(("ref_points", "auto"))
 ]
 
 

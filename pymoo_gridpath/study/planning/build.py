@@ -23,7 +23,7 @@ from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.representations import Representation, make_representation
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.kinds import ALGORITHM, OBJECTIVE, REPRESENTATION
-from pymoo_gridpath.study.specification.operators import make_operator
+from pymoo_gridpath.study.specification.operators import make_operator, planner_of
 
 # Problems that a process keeps, since many runs share one.
 KEPT_PROBLEMS = 4
@@ -124,7 +124,7 @@ def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> A
     GridPathError
         As `make_algorithm`.
     """
-    from pymoo_gridpath.algorithms import ExactFront, ahmed_deb_2013, make_algorithm
+    from pymoo_gridpath.algorithms import ahmed_deb_2013, make_algorithm
 
     if "preset" in algorithm:
         setup: Any = ahmed_deb_2013(
@@ -142,8 +142,9 @@ def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> A
         return setup.algorithm
     if not isinstance(algorithm["algorithm"], str):
         return _own_algorithm(algorithm, problem)
-    if algorithm["algorithm"] == "exact":
-        return ExactFront(max_seconds=algorithm["max_seconds"], max_labels=algorithm["max_labels"])
+    if planner_of(algorithm["algorithm"]) is not None:
+        given = {key: value for key, value in algorithm.items() if key != "algorithm"}
+        return make_algorithm(algorithm["algorithm"], problem, **given)
     return make_algorithm(
         algorithm["algorithm"],
         problem,

@@ -9,13 +9,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms.paper import PENALTY
 from pymoo_gridpath.problems.grid_path import DEFAULT_PENALTY
 from pymoo_gridpath.study.specification.kinds import SLOTS, is_monotone, is_of_paper, objective_name
 from pymoo_gridpath.study.specification.operators import default_operator
-
-DEFAULT_POP_SIZE = 100
-PRESET_POP_SIZE = 500
-PRESET_PENALTY = 1.0
 
 # What `path_operators` and `paper_operators` return, all with their default arguments; the mutation of the latter depends on
 # the problem, so that "paper" stands for it.
@@ -92,7 +89,7 @@ def _preset_overrides(problem: Mapping[str, Any], overrides: Mapping[str, Any]) 
     if len(problem["objectives"]) == 1 and problem["obstacles"] == "penalty":
         brought["obstacles"] = "constraint"
     if {**problem, **brought, **overrides}["obstacles"] == "penalty":
-        brought["penalty"] = PRESET_PENALTY
+        brought["penalty"] = PENALTY
     return brought | dict(overrides)
 
 
@@ -105,7 +102,7 @@ def _resolved_operators(given: Mapping[str, Any], algorithm: Any, representation
         slots = algorithm["slots"]
     else:
         # Differential evolution makes its children itself.
-        slots = list(SLOTS) if CAPABILITIES[algorithm].operators or given["base"] != "default" else ["sampling", "repair"]
+        slots = list(SLOTS) if CAPABILITIES[algorithm].takes_operators or given["base"] != "default" else ["sampling", "repair"]
     names: dict[str, str] = dict(_PATH)
     named = isinstance(representation, str)
     if base == "random":

@@ -117,10 +117,12 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
 
 def _measure_exact(algorithm: Mapping[str, Any], problem, max_seconds: float) -> tuple[float, bool]:
     begin = working_seconds()
-    own = algorithm["max_seconds"]
-    search: Any = build_algorithm({**algorithm, "max_seconds": max_seconds if own is None else min(own, max_seconds)}, problem)
+    own = algorithm.get("max_seconds")
+    if "max_seconds" in algorithm:
+        algorithm = {**algorithm, "max_seconds": max_seconds if own is None else min(own, max_seconds)}
+    search: Any = build_algorithm(algorithm, problem)
     search.setup(problem)
     search.next()
     took = working_seconds() - begin
-    ended = search.found.complete or algorithm["max_labels"] is not None
+    ended = search.success or "max_seconds" not in algorithm or algorithm.get("max_labels") is not None
     return (took, False) if ended else (max(took, own or 0.0), True)

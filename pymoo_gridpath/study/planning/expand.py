@@ -10,6 +10,9 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
+from pymoo_gridpath.algorithms.paper import POP_SIZE
+from pymoo_gridpath.planners import reference_planner
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_representation
 from pymoo_gridpath.study.planning.plan import (
@@ -26,7 +29,7 @@ from pymoo_gridpath.study.planning.trial import Pair, one_of_each_kind, run_brie
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.kinds import algorithm_entry, is_monotone, representation_entry
-from pymoo_gridpath.study.specification.operators import operator_entry
+from pymoo_gridpath.study.specification.operators import operator_entry, own_budget, planner_of
 from pymoo_gridpath.study.specification.study import Study
 
 #: Runs that a study may have.
@@ -64,7 +67,7 @@ def plan_study(study: Study) -> Plan:
     """
     checks.instance("study", study, Study)
     problems, groups = plan_problems(study)
-    reference = None if study.reference is False else {"algorithm": "exact", **study.reference}
+    reference = None if study.reference is False else {"algorithm": reference_planner(), **study.reference}
     algorithms = [_algorithm(spec, reference) for spec in study.algorithms]
     n_runs = sum(1 if is_deterministic(algorithm.spec) else len(study.seeds) for algorithm in algorithms) * len(problems)
     if n_runs > MAX_RUNS:
@@ -82,22 +85,23 @@ def plan_study(study: Study) -> Plan:
 def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> PlannedAlgorithm:
     """Return the canonical form of an algorithm, but for the defaults that depend on the problem."""
     if spec.preset is not None:
-        content: dict[str, Any] = {"preset": spec.preset, "pop_size": spec.pop_size or canonical.PRESET_POP_SIZE}
-    elif spec.algorithm == "exact":
-        content = {"algorithm": "exact", "max_seconds": spec.max_seconds, "max_labels": spec.max_labels}
-        if spec.max_seconds is None and spec.max_labels is None and reference is not None:
+        content: dict[str, Any] = {"preset": spec.preset, "pop_size": spec.pop_size or POP_SIZE}
+    elif (planner := planner_of(spec.algorithm)) is not None:
+        budget = {key: getattr(spec, key) for key in own_budget(planner)}
+        content = {"algorithm": spec.algorithm, **budget}
+        if reference is not None and reference["algorithm"] == spec.algorithm and set(budget.values()) == {None}:
             content = dict(reference)
     elif own.is_path(spec.algorithm):
         entry = algorithm_entry(spec.algorithm)
         content = {"algorithm": entry, "parameters": spec.parameters}
         if entry["pop_size"]:
-            content["pop_size"] = spec.pop_size or canonical.DEFAULT_POP_SIZE
+            content["pop_size"] = spec.pop_size or DEFAULT_POP_SIZE
         if entry["slots"]:
             content["operators"] = _operators(spec.operators)
     else:
         content = {
             "algorithm": spec.algorithm,
-            "pop_size": spec.pop_size or canonical.DEFAULT_POP_SIZE,
+            "pop_size": spec.pop_size or DEFAULT_POP_SIZE,
             "smoothness": spec.smoothness,
             "operators": _operators(spec.operators),
             "parameters": spec.parameters,

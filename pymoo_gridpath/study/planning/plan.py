@@ -8,11 +8,13 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
+from pymoo_gridpath.algorithms import find_algorithm
 from pymoo_gridpath.memory import needed
 from pymoo_gridpath.study.planning.canonical import n_cells, resolve
 from pymoo_gridpath.study.planning.stored import check_plan
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name
+from pymoo_gridpath.study.specification.operators import planner_of
 
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
 SCHEMA = 2
@@ -180,8 +182,8 @@ class Plan:
 
 
 def has_own_budget(algorithm: Mapping[str, Any]) -> bool:
-    """Whether a canonical algorithm ends by a budget of its own, as the exact front does, and not by the study's."""
-    return "max_seconds" in algorithm
+    """Whether a canonical algorithm is a planner, which ends by itself or a budget of its own, and not by the study's."""
+    return planner_of(algorithm.get("algorithm")) is not None
 
 
 def is_deterministic(algorithm: Mapping[str, Any]) -> bool:
@@ -196,7 +198,9 @@ def is_truth(algorithm: Mapping[str, Any]) -> bool:
 
 def _says(algorithm: Mapping[str, Any], flag: str) -> bool:
     content = algorithm.get("algorithm")
-    return has_own_budget(algorithm) if isinstance(content, str) or content is None else content[flag]
+    if content is None:
+        return False
+    return getattr(find_algorithm(content), flag) if isinstance(content, str) else content[flag]
 
 
 def run_key(problem: Mapping[str, Any], algorithm: Mapping[str, Any], budget: Mapping[str, int] | None, seed: int) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.errors import CapabilityError, StudyError
+from pymoo_gridpath.planners import Planner, reference_planner
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec
+from pymoo_gridpath.study.specification.operators import planner_of
 from pymoo_gridpath.study.specification.problem import ProblemSpec, RandomFamily
 from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.study.specification.values import Where
@@ -39,11 +41,11 @@ def check_plan(data: Any) -> None:
     _check_limits(problems, algorithms)
     reference = plan.get("reference")
     if reference is not None:
-        reference = _exact(reference, ("reference",))
+        reference = _planner(reference, ("reference",))
     # What stands in a study as in its plan, so that the study checks it.
     Study(
         problems=[ProblemSpec(map="checked")],
-        algorithms=[AlgorithmSpec(algorithm="exact")],
+        algorithms=[AlgorithmSpec(algorithm=reference_planner())],
         seeds=1,
         name=plan["name"],
         budget=plan["budget"],
@@ -126,12 +128,20 @@ def _check_grid(value: Any, where: Where) -> tuple[int, int]:
     return values.whole(grid["width"], (*where, "width"), 1), values.whole(grid["height"], (*where, "height"), 1)
 
 
-def _exact(value: Any, where: Where) -> dict[str, Any]:
-    """Return the table of an exact front."""
-    table = _table(value, ("algorithm",), where, "the exact front", ("max_seconds", "max_labels"))
-    if table["algorithm"] != "exact":
-        raise StudyError(f"algorithm is {values.show(table['algorithm'])}, expected exact", (*where, "algorithm"))
+def _planner(value: Any, where: Where) -> dict[str, Any]:
+    """Return the table of a planner."""
+    table = _table(value, ("algorithm",), where, "the planner", ("max_seconds", "max_labels"))
+    if _planner_of(table["algorithm"]) is None:
+        raise StudyError(f"algorithm is {values.show(table['algorithm'])}, expected a planner", (*where, "algorithm"))
     return table
+
+
+def _planner_of(name: object) -> type[Planner] | None:
+    """Return the planner of a name; None for other names, whether there is such an algorithm or not."""
+    try:
+        return planner_of(name)
+    except CapabilityError:
+        return None
 
 
 def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str, Any]:
@@ -140,8 +150,8 @@ def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str,
     spec = values.table(algorithm["spec"], place)
     if "preset" in spec:
         spec = _table(spec, ("preset", "pop_size"), place, "the preset")
-    elif spec.get("algorithm") == "exact":
-        spec = _exact(spec, place)
+    elif _planner_of(spec.get("algorithm")) is not None:
+        spec = _planner(spec, place)
     else:
         keys = ("algorithm", "pop_size", "smoothness", "operators", "parameters")
         spec = _table(spec, keys, place, "the algorithm")

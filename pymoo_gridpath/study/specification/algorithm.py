@@ -19,12 +19,12 @@ PRESETS = ("ahmed-deb-2013",)
 
 @dataclass(frozen=True, kw_only=True)
 class AlgorithmSpec:
-    """One table ``[[algorithms]]``: an algorithm of the capability table, "exact", or a preset.
+    """One table ``[[algorithms]]``: an algorithm of the capability table, a planner, or a preset.
 
     Parameters
     ----------
     algorithm : str or type, optional
-        What `make_algorithm` takes, or "exact"; or an algorithm of your own: the path of its class,
+        What `make_algorithm` takes; or an algorithm of your own: the path of its class,
         ``"package.module:Class"``, or the class. It is given those of ``pop_size`` and ``operators`` that its constructor
         takes.
     preset : {"ahmed-deb-2013"}, optional
@@ -44,7 +44,7 @@ class AlgorithmSpec:
     parameters : mapping, optional
         Further arguments of the algorithm, such as ``n_neighbors``.
     max_seconds, max_labels : optional
-        Budget of "exact"; by default that of the study's reference.
+        Budget of a planner that takes one; by default that of the study's reference if it is its planner.
     representation, obstacles, penalty, potential_limit, axis : optional
         Changes to the problems that it solves.
 
@@ -93,15 +93,18 @@ class AlgorithmSpec:
             if operator_slots(takes.cls):
                 set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
                 self._check_slots(str(self.algorithm))
-        elif self.algorithm not in (None, "exact"):
+        elif self.algorithm is not None and _operators.planner_of(self.algorithm) is None:
             set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
             self._check_slots(str(self.algorithm))
             given = {} if self.parameters is None else self.parameters
             set_fields(self, parameters=parameters(self.algorithm, given, ("parameters",)))
 
     def _check_kind(self) -> None:
-        owner = "exact" if self.algorithm == "exact" else "the preset" if self.preset else self.algorithm
-        takes = {"exact": ("max_seconds", "max_labels"), "the preset": ("pop_size",)}
+        owner = "the preset" if self.preset else self.algorithm
+        takes: dict[str, tuple[str, ...]] = {"the preset": ("pop_size",)}
+        planner = _operators.planner_of(self.algorithm)
+        if planner is not None:
+            takes[str(owner)] = _operators.own_budget(planner)
         if own.is_path(owner):
             cls = own.read(owner, ALGORITHM, ("algorithm",)).cls
             takes[str(owner)] = (
@@ -114,14 +117,14 @@ class AlgorithmSpec:
             value = getattr(self, key)
             given = value is not None and not (isinstance(value, str) and value == "default")
             if given and key not in known:
-                raise StudyError(f"{owner} takes no {key}, only {' and '.join(known)}", (key,))
+                raise StudyError(f"{owner} takes no {key}, only {' and '.join(known) or 'a name'}", (key,))
 
     def _check_slots(self, algorithm: str) -> None:
         if own.is_path(algorithm):
             cls = own.read(algorithm, ALGORITHM, ("algorithm",)).cls
             accepted, whole = own.parameters_of(cls), "crossover" in operator_slots(cls)
         else:
-            accepted, whole = accepted_parameters(algorithm), CAPABILITIES[algorithm].operators
+            accepted, whole = accepted_parameters(algorithm), CAPABILITIES[algorithm].takes_operators
         if not whole and self.operators["base"] != "default":
             raise StudyError(
                 f"{algorithm} makes children by differential evolution, so that there is no set of operators for it; "

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import functools
 import inspect
-import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath import operators as _operators
-from pymoo_gridpath.algorithms import CAPABILITIES, ExactFront
-from pymoo_gridpath.algorithms.factory import _class_of, find_capability
+from pymoo_gridpath.algorithms import CAPABILITIES, find_algorithm
+from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
+from pymoo_gridpath.planners import PLANNERS, Planner
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.kinds import ALGORITHM, SLOTS
 from pymoo_gridpath.study.specification.own import Kind
@@ -48,37 +48,47 @@ def read_algorithm(value: Any, where: Where) -> str:
     if not isinstance(value, type) and not own.is_path(value):
         return algorithm_name(values.text(value, where), where)
     given = own.read(value, ALGORITHM, where)
-    if given.cls is ExactFront:
-        return "exact"
+    for name in PLANNERS:
+        if PLANNERS[name] is given.cls:
+            return name
     row = CAPABILITIES.get(given.cls.__name__)
-    return algorithm_name(row.name, where) if row is not None and _class_of(row) is given.cls else given.name
+    return algorithm_name(row.name, where) if row is not None and class_of(row) is given.cls else given.name
 
 
 def algorithm_name(name: str, where: Where) -> str:
-    """Return an algorithm's name as the capability table writes it, or "exact".
+    """Return an algorithm's name as the capability table writes it, or a planner's.
 
     Raises
     ------
     StudyError
         If there is no such algorithm, or no grid problem suits it, or a package that it needs is missing.
     """
-    if re.sub(r"[^a-z]", "", name.lower()) in ("exact", "exactfront"):
-        return "exact"
     try:
-        row = find_capability(name)
-    except CapabilityError:
-        raise StudyError(
-            f"there is no algorithm {values.show(name)}; {nearest(name, [*CAPABILITIES, 'exact'])}", where
-        ) from None
+        row = find_algorithm(name)
+    except CapabilityError as error:
+        raise StudyError(str(error), where) from None
+    if isinstance(row, type):
+        return next(known for known in PLANNERS if PLANNERS[known] is row)
     if row.unfit:
         raise StudyError(f"{row.name} {row.unfit}", where)
     if row.needs == "automated_dm":
         raise StudyError(f"{row.name} asks a decision maker during the run, whom a study cannot describe", where)
     try:
-        _class_of(row)
+        class_of(row)
     except CapabilityError as error:
         raise StudyError(str(error), where) from None
     return row.name
+
+
+def planner_of(algorithm: object) -> type[Planner] | None:
+    """Return the class of a planner by its name; None for all else that a study calls an algorithm."""
+    spec = find_algorithm(algorithm) if isinstance(algorithm, str) and not own.is_path(algorithm) else None
+    return spec if isinstance(spec, type) else None
+
+
+def own_budget(planner: type[Planner]) -> tuple[str, ...]:
+    """Return which keys of a study's budgets a planner takes."""
+    return tuple(key for key in ("max_seconds", "max_labels") if key in planner.parameters())
 
 
 def operators(given: Any, where: Where) -> dict[str, Any]:

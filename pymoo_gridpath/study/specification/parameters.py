@@ -6,7 +6,7 @@ from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms import arguments as _arguments
-from pymoo_gridpath.algorithms.factory import _class_of
+from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.values import MAX_POP_SIZE, Where
@@ -68,7 +68,7 @@ def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
 def accepted_parameters(algorithm: str) -> dict[str, Any]:
     """Return what the class of an algorithm takes, with the defaults."""
     row = CAPABILITIES[algorithm]
-    return _arguments.parameters(_class_of(row), row.name)
+    return _arguments.parameters(class_of(row), row.name)
 
 
 def _check(key: str, value: Any, default: Any, where: Where) -> None:

@@ -15,7 +15,7 @@ from pymoo_gridpath.quality import ReferenceFront
 class PathOutput(Output):
     """A line a generation: evaluations, legal paths of the population, the least length among them, distance to the front.
 
-    `make_algorithm` and `ExactFront` give each algorithm one of its own; ``output=`` takes another. The columns:
+    `make_algorithm` and every `Planner` give each algorithm one of its own; ``output=`` takes another. The columns:
 
     - ``n_gen``, ``n_eval``: generations and evaluations so far.
     - ``legal``: members of the population that are legal paths.

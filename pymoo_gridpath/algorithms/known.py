@@ -1,0 +1,140 @@
+"""Algorithms and planners by name: pymoo's of the capability table, those of others that are registered, and planners."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import importlib.util
+import inspect
+from dataclasses import replace
+
+from pymoo.core.algorithm import Algorithm
+from pymoo.core.problem import Problem
+
+from pymoo_gridpath import checks
+from pymoo_gridpath.algorithms.arguments import parameters
+from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
+from pymoo_gridpath.algorithms.moead import SmoothMOEAD
+from pymoo_gridpath.errors import CapabilityError, counted
+from pymoo_gridpath.planners import PLANNERS, Planner
+from pymoo_gridpath.planners.signature import key_of
+from pymoo_gridpath.registry import Registry
+
+#: Algorithms of others that are known by name, see `pymoo_gridpath.registry`: derived from pymoo's ``Algorithm``, no planners.
+#: What one can do is its class attribute ``capability``, a `Capability`, or else what the signature of its constructor says.
+ALGORITHMS: Registry[type[Algorithm]] = Registry(
+    "algorithm", "pymoo_gridpath.algorithms", Algorithm, error=CapabilityError, key=key_of
+)
+
+_PACKAGES = {"scikit-learn": "sklearn"}
+_OWN = {key_of(row.name): row for row in CAPABILITIES.values()}
+
+
+def find_algorithm(name: str, n_obj: int | None = None) -> Capability | type[Planner]:
+    """Return what an algorithm or planner can do: its row of the capability table, or the planner's class.
+
+    Both have ``name``, ``deterministic``, ``reference``, ``takes_operators`` and ``takes_pop_size``.
+
+    Parameters
+    ----------
+    name : str
+        Case and punctuation do not matter.
+    n_obj : int, optional
+        Number of objectives of the problem, for the hint.
+
+    Returns
+    -------
+    Capability or type
+        The row of an algorithm, or the class of a planner.
+
+    Raises
+    ------
+    CapabilityError
+        If there is none, with the nearest that suits grid problems of so many objectives; or if two go by that name.
+
+    Examples
+    --------
+    >>> find_algorithm("MOEA/D").deterministic, find_algorithm("exact").deterministic
+    (False, True)
+    """
+    key = key_of(name)
+    homes = [home for home in (_OWN, ALGORITHMS, PLANNERS) if key in home]
+    if len(homes) > 1:
+        raise CapabilityError(f"two algorithms are called {checks.shown(name)}, expected another name for the registered one")
+    if key in _OWN:
+        return _OWN[key]
+    if key in ALGORITHMS:
+        return _row_of(name)
+    if key in PLANNERS:
+        return PLANNERS[name]
+    for planner in PLANNERS.values():
+        if key == key_of(planner.__name__):
+            return planner
+    raise _unknown(name, key, n_obj)
+
+
+def _unknown(name: str, key: str, n_obj: int | None) -> CapabilityError:
+    rows = [*CAPABILITIES.values(), *map(_row_of, ALGORITHMS)]
+    fit = {key_of(row.name): row.name for row in rows if not row.unfit and (n_obj is None or row.takes(n_obj))}
+    fit |= {key_of(planner): planner for planner in PLANNERS}
+    near = difflib.get_close_matches(key, fit, n=1, cutoff=0.6)
+    many = "" if n_obj is None else f" for {counted(n_obj, 'objective')}"
+    hint = f"did you mean {fit[near[0]]!r}?" if near else f"expected one of {', '.join(fit.values())}{many}"
+    return CapabilityError(f"there is no algorithm {checks.shown(name)}; {hint}")
+
+
+def _row_of(name: str) -> Capability:
+    """Return what a registered algorithm can do: what it says itself, or else what its signature tells."""
+    cls = ALGORITHMS[name]
+    # As it is registered: the name is what finds its class again.
+    name = next(known for known in ALGORITHMS if key_of(known) == key_of(name))
+    row = getattr(cls, "capability", None)
+    if row is not None:
+        return replace(checks.instance(f"the capability of {name}", row, Capability, error=CapabilityError), name=name)
+    takes = parameters(cls, name)
+    needed = [key for key in ("ref_dirs", "ref_points") if takes.get(key) is inspect.Parameter.empty]
+    return Capability(
+        name,
+        cls.__module__,
+        min_objectives=1,
+        takes_operators={"crossover", "mutation"} <= takes.keys(),
+        takes_pop_size="pop_size" in takes,
+        repair="repair" in takes,
+        needs=needed[0] if needed else "",
+        unpacks={"sampling", "crossover", "mutation", "repair", "eliminate_duplicates"} <= takes.keys(),
+    )
+
+
+def class_of(row: Capability) -> type:
+    """Return the class of an algorithm.
+
+    Raises
+    ------
+    CapabilityError
+        If it needs a package that is not installed.
+    """
+    if row.name in ALGORITHMS and key_of(row.name) not in _OWN:
+        return ALGORITHMS[row.name]
+    if row.name == "MOEAD":
+        return SmoothMOEAD
+    package = _PACKAGES.get(row.extra, row.extra)
+    if package and importlib.util.find_spec(package) is None:
+        raise CapabilityError(f"{row.name} needs the package {row.extra}, which is not installed: pip install {row.extra}")
+    return getattr(importlib.import_module(row.module), row.name)
+
+
+def refuse_problem(row: Capability, problem) -> None:
+    """Raise a CapabilityError that says what an algorithm cannot do for a problem, if anything."""
+    if not isinstance(problem, Problem):
+        raise CapabilityError(f"the problem is of the class {type(problem).__name__}, expected one of pymoo: a Problem")
+    if row.unfit:
+        raise CapabilityError(f"{row.name} {row.unfit}")
+    if problem.n_obj < row.min_objectives:
+        raise CapabilityError(
+            f"{row.name} needs at least {row.min_objectives} objectives, the problem has {problem.n_obj}; use 'GA' for one"
+        )
+    if row.max_objectives is not None and problem.n_obj > row.max_objectives:
+        most = "one objective" if row.max_objectives == 1 else f"at most {row.max_objectives} objectives"
+        raise CapabilityError(f"{row.name} takes {most}, the problem has {problem.n_obj}")
+    if problem.has_constraints() and not row.constraints:
+        raise CapabilityError(f"{row.name} cannot solve problems with constraints; use obstacles='penalty'")

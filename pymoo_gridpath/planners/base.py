@@ -1,0 +1,178 @@
+"""What every planner is that is no evolutionary search: a pymoo algorithm that plans once."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from pymoo.core.algorithm import Algorithm
+from pymoo.core.population import Population
+
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
+from pymoo_gridpath.paths.sequences import Sequences
+from pymoo_gridpath.planners.display import PathOutput
+from pymoo_gridpath.planners.signature import key_of, parameters_of, refuse_unknown
+from pymoo_gridpath.registry import Registry
+from pymoo_gridpath.representations.base import representation_of
+
+
+class Plan(NamedTuple):
+    """What a planner has found.
+
+    Attributes
+    ----------
+    paths : Sequences or numpy.ndarray
+        Legal paths, none or any number: the cells that they visit, or rows of genes of shape (N, n_var).
+    success : bool
+        Whether the planner has done what it promises; it may be that there is no path to be found.
+    message : str
+        How the search went, a few words without an end mark, such as "all 2 points found".
+    """
+
+    paths: Sequences | np.ndarray
+    success: bool = True
+    message: str = ""
+
+
+class Planner(Algorithm, ABC):
+    """Base of the planners that are no evolutionary searches.
+
+    A planner of one's own has a method `plan`, and arguments of its constructor that are keywords, of which it hands on those
+    that it does not know. All else is here: it is called once, its paths are checked, coded, and evaluated by the problem like
+    those of any other algorithm, and the Result says how it went, ``result.success`` and ``result.message``. Seeds count where
+    it draws from ``self.random_state``, terminations do not. One that is registered, see `pymoo_gridpath.registry.register`, is
+    known by its name to `make_algorithm`, studies and the command line.
+
+    Parameters
+    ----------
+    **kwargs
+        What every pymoo algorithm takes, such as ``callback``.
+
+    Attributes
+    ----------
+    name : str
+        Class attribute: what it is called by name; by default the name of the class.
+    deterministic : bool
+        Class attribute: whether it draws no random number, so that a study needs one run of it. Default True.
+    reference : bool
+        Class attribute: whether a Result with ``success`` is the whole front, which others are measured against. Default False.
+    takes_operators, takes_pop_size : bool
+        Class attributes: whether its constructor takes ``operators`` and ``pop_size``, as `make_algorithm` does. Default False.
+    success, message
+        As in the `Plan`, once it has run.
+
+    Raises
+    ------
+    CapabilityError
+        If an argument is unknown.
+    GridPathError
+        When the run begins, if the problem is no path problem; when the paths are there, if one is not legal.
+
+    Examples
+    --------
+    >>> from pymoo.optimize import minimize
+    >>> from pymoo_gridpath import GridPathProblem, OccupancyGrid
+    >>> import numpy as np
+    >>> class Straight(Planner):
+    ...     def plan(self, problem):
+    ...         n = problem.goal[0] + 1
+    ...         row = problem.start[1] * problem.grid.width
+    ...         return Plan(Sequences(np.arange(row, row + n), np.array([0, n])), message="went straight on")
+    >>> problem = GridPathProblem(OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 0, 0]]), (0, 0), (2, 0))
+    >>> result = minimize(problem, Straight())
+    >>> result.F.round(2).tolist(), result.message
+    ([[2.0, 0.37]], 'went straight on')
+    """
+
+    deterministic: ClassVar[bool] = True
+    reference: ClassVar[bool] = False
+    takes_operators: ClassVar[bool] = False
+    takes_pop_size: ClassVar[bool] = False
+
+    # pymoo fills it when the run begins.
+    termination: Any
+
+    def __init__(self, **kwargs):
+        refuse_unknown(type(self).__name__, kwargs, self.parameters())
+        # It finds its paths at once: there is no way to show.
+        super().__init__(output=kwargs.pop("output", PathOutput(distance=False)), **kwargs)
+
+    @classmethod
+    def parameters(cls) -> dict[str, Any]:
+        """Return what the constructor takes, with the defaults, for whoever knows the planner by its name alone."""
+        return parameters_of(cls)
+
+    @abstractmethod
+    def plan(self, problem) -> Plan:
+        """Return paths for a problem.
+
+        Parameters
+        ----------
+        problem : GridPathProblem
+            With its ``grid``, ``start``, ``goal``, ``objectives`` and ``representation``, whose ``moves`` are the legal steps.
+
+        Returns
+        -------
+        Plan
+            Legal paths: from the start to the goal, by legal steps and, with ``obstacles="limit"``, within the potential limit.
+        """
+
+    def _initialize_infill(self):
+        representation = representation_of(self.problem)
+        plan = self.plan(self.problem)
+        if not isinstance(plan, Plan):
+            raise GridPathError(f"the planner {self._name} returned {checks.shown(plan)}, expected a Plan")
+        self.success = checks.flag(f"the success of the planner {self._name}", plan.success)
+        self.message = checks.text(f"the message of the planner {self._name}", plan.message)
+        X = plan.paths
+        if isinstance(X, Sequences):
+            try:
+                X = representation.from_sequences(X)
+            except GridPathError as error:
+                raise GridPathError(f"the planner {self._name} returned what is no path of the problem: {error}") from error
+        expected = f"Sequences, or rows of {representation.n_var} genes"
+        X = checks.array(f"what the planner {self._name} returned", X, (None, representation.n_var), expected=expected)
+        return Population.new("X", X)
+
+    def _initialize_advance(self, infills=None, **kwargs):
+        self._refuse_illegal(infills)
+        self.termination.terminate()
+
+    def _refuse_illegal(self, pop) -> None:
+        if not len(pop):
+            return
+        crossing = np.flatnonzero(np.asarray(pop.get("interfering_cells")) > 0)
+        violating = np.flatnonzero(np.asarray(pop.get("CV"), dtype=float).reshape(len(pop), -1).max(axis=1) > 0)
+        for found, what in (
+            (crossing, "crosses an obstacle or makes a step that is not legal"),
+            (violating, "exceeds the limit"),
+        ):
+            if len(found):
+                raise GridPathError(
+                    f"the planner {self._name} returned {counted(len(pop), 'path')} of which number {found[0]} {what}, "
+                    f"expected legal paths"
+                )
+
+    def _set_optimum(self):
+        # All of them: a planner returns what it stands for, and pymoo's filter would compare every path with every other.
+        self.opt = self.pop
+
+    def result(self):
+        result: Any = super().result()
+        result.success, result.message = self.success, self.message
+        return result
+
+    @property
+    def _name(self) -> str:
+        return type(self).__name__
+
+
+#: The planners that are known by name, see `pymoo_gridpath.registry`; spelling and the name of the class are as good.
+PLANNERS: Registry[type[Planner]] = Registry("planner", "pymoo_gridpath.planners", Planner, error=CapabilityError, key=key_of)
+
+
+def reference_planner() -> str:
+    """Return the name of the planner whose results others are measured against."""
+    return next(name for name in PLANNERS if PLANNERS[name].reference)

@@ -1,0 +1,57 @@
+"""What an algorithm is called, and which keyword arguments its constructor takes."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from pymoo_gridpath.errors import CapabilityError, nearest
+
+
+def key_of(name: object) -> str:
+    """Return what all spellings of the name of an algorithm have in common: "NSGA-II", "nsga2" and "Nsga_2" are one."""
+    key = re.sub(r"[^a-z0-9]", "", name.lower()) if isinstance(name, str) else ""
+    return re.sub(r"ii$", "2", re.sub(r"iii$", "3", key))
+
+
+def parameters_of(cls: type, below: type = object) -> dict[str, Any]:
+    """Return what the constructor of a class takes, through all ``**kwargs`` up to its bases, with the defaults.
+
+    Parameters
+    ----------
+    cls : type
+    below : type, optional
+        A base whose own arguments, and those beyond it, are left out.
+
+    Returns
+    -------
+    dict
+        Default by parameter; ``inspect.Parameter.empty`` where there is none.
+    """
+    found: dict[str, Any] = {}
+    for base in cls.__mro__[: cls.__mro__.index(below)]:
+        if "__init__" not in vars(base):
+            continue
+        listed = list(inspect.signature(vars(base)["__init__"]).parameters.values())[1:]
+        for item in listed:
+            if item.kind in (item.POSITIONAL_OR_KEYWORD, item.KEYWORD_ONLY):
+                found.setdefault(item.name, item.default)
+        if not any(item.kind is item.VAR_KEYWORD for item in listed):
+            break
+    return found
+
+
+def refuse_unknown(owner: str, given: Iterable[str], accepted: Iterable[str]) -> None:
+    """Refuse keyword arguments that an algorithm does not take.
+
+    Raises
+    ------
+    CapabilityError
+        With the nearest that it takes; pymoo itself would say nothing and go without.
+    """
+    accepted = sorted(set(accepted))
+    for key in given:
+        if key not in accepted:
+            raise CapabilityError(f"{owner} takes no argument {key!r}; {nearest(key, accepted, 'it takes')}")

@@ -1,0 +1,123 @@
+"""What every crossover, mutation, repair and sampling must do on a path problem, as tests to inherit."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from pymoo.core.crossover import Crossover
+from pymoo.core.mutation import Mutation
+from pymoo.core.operator import Operator
+from pymoo.core.population import Population
+from pymoo.core.sampling import Sampling
+
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.operators.mating import mates_on_arrays
+from pymoo_gridpath.problems import GridPathProblem
+
+N = 12
+
+
+class OperatorSuite:
+    """Tests of an operator; a class of tests derives from it and has `make`.
+
+    Children have the right shape, whole numbers within the bounds, are the same for the same seed, in another process too, and
+    leave their parents as they were.
+    """
+
+    #: The representation that it is for.
+    representation = "integer"
+
+    def make(self) -> Operator:
+        """Return a new operator."""
+        raise NotImplementedError
+
+    def problem(self) -> Any:
+        """Return a small problem."""
+        return GridPathProblem(OccupancyGrid(np.zeros((8, 8)), corner_cutting=True), (0, 0), (7, 7), self.representation)
+
+    def parents(self, problem: Any) -> np.ndarray:
+        """Return N rows of genes that code paths."""
+        rng = np.random.default_rng(5)
+        X = rng.integers(problem.xl, problem.xu, size=(N, problem.n_var), endpoint=True)
+        return problem.representation.repair(X.astype(problem.vtype), rng)
+
+    def apply(self, operator: Any, problem: Any, X: np.ndarray, seed: int) -> np.ndarray:
+        """Return the rows that an operator makes of rows, called as pymoo calls it."""
+        rng: Any = np.random.default_rng(seed)
+        pop = Population.new("X", X)
+        if isinstance(operator, Sampling):
+            return operator(problem, N, random_state=rng).get("X")
+        if isinstance(operator, Crossover):
+            pairs = np.arange(N).reshape(-1, operator.n_parents)
+            return operator(problem, pop, pairs, random_state=rng).get("X")
+        return operator(problem, pop, random_state=rng).get("X")
+
+    @pytest.mark.parametrize("seed", range(3))
+    def test_rows_are_whole_numbers_within_the_bounds(self, seed):
+        problem, operator = self.problem(), self.make()
+        X = self.apply(operator, problem, self.parents(problem), seed)
+        n = N // operator.n_parents * operator.n_offsprings if isinstance(operator, Crossover) else N
+        assert X.shape == (n, problem.n_var)
+        assert np.array_equal(X, np.rint(X.astype(float)))
+        assert (problem.xl <= X).all() and (problem.xu >= X).all()
+
+    def test_input_is_not_changed(self):
+        problem, operator = self.problem(), self.make()
+        X = self.parents(problem)
+        before = X.copy()
+        arrays = X.reshape(operator.n_parents, -1, problem.n_var) if isinstance(operator, Crossover) else X
+        if not isinstance(operator, Sampling):
+            operator._do(problem, arrays, random_state=np.random.default_rng(1))
+        assert np.array_equal(X, before)
+
+    def test_the_same_seed_gives_the_same(self):
+        problem = self.problem()
+        X = self.parents(problem)
+        first, second = (self.apply(self.make(), problem, X, 3) for _ in range(2))
+        assert np.array_equal(first, second)
+
+    def test_the_same_in_another_process(self):
+        problem = self.problem()
+        X = self.apply(self.make(), problem, self.parents(problem), 3)
+        code = "import sys, pickle, hashlib; suite = pickle.load(sys.stdin.buffer); print(suite._digest())"
+        path = {"PYTHONPATH": ":".join(sys.path), "PYTHONHASHSEED": "77"}
+        done = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(self), capture_output=True, env=path, check=True)
+        assert done.stdout.decode().split()[-1] == _digest(X)
+
+    def _digest(self) -> str:
+        problem = self.problem()
+        return _digest(self.apply(self.make(), problem, self.parents(problem), 3))
+
+    def test_nothing_is_drawn_from_numpys_global_generator(self):
+        problem = self.problem()
+        before = np.random.get_state(legacy=True)[1].copy(), np.random.get_state(legacy=True)[2]  # noqa: NPY002
+        self.apply(self.make(), problem, self.parents(problem), 1)
+        after = np.random.get_state(legacy=True)  # noqa: NPY002
+        assert np.array_equal(after[1], before[0]) and after[2] == before[1]
+
+    def test_the_array_hook_says_all_where_it_is_said_to(self):
+        operator: Any = self.make()
+        if not isinstance(operator, Crossover | Mutation) or not mates_on_arrays(operator):
+            return
+        problem, operator.prob = self.problem(), 1.0
+        X = self.parents(problem)
+        arrays = X.reshape(-1, operator.n_parents, problem.n_var).swapaxes(0, 1) if isinstance(operator, Crossover) else X
+        rng = np.random.default_rng(3)
+        # pymoo draws who crosses before, and who mutates after.
+        if isinstance(operator, Crossover):
+            rng.random(arrays.shape[1])
+        made = operator._do(problem, arrays.copy(), random_state=rng).reshape(-1, problem.n_var)
+        assert np.array_equal(made, self.apply(operator, problem, X, 3))
+
+    def test_it_pickles(self):
+        assert type(pickle.loads(pickle.dumps(self.make()))) is type(self.make())
+
+
+def _digest(X: np.ndarray) -> str:
+    return hashlib.sha256(np.ascontiguousarray(X, dtype=np.int64).tobytes()).hexdigest()
