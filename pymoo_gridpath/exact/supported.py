@@ -207,10 +207,8 @@ def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent:
 
     None if a budget is used up before. States from which no path below the corner goes on have no finite sum.
     """
-    step, field, enter = (
-        None if values is None else np.stack([_weighted(values, weights), values[0]])
-        for values in (costs.step, costs.field, costs.enter)
-    )
+    step, field = (np.stack([_weighted(values, weights), values[0]]) for values in (costs.step, costs.field))
+    enter = None if costs.enter is None else np.stack([_weighted(costs.enter, weights), costs.enter[0]])
     # One unit beyond the corner lies what labels stay below, see _corners of the label search; and one more for rounding.
     limit = int((weights[0] * (corner[0] + 1) + weights[1] * (corner[1] + 1)) * (1 + 1e-12)) + 2
     weighted = _weighted(spent, weights)
