@@ -69,7 +69,7 @@ class Costs(NamedTuple):
     @property
     def with_heading(self) -> bool:
         """Whether some cost depends on the heading before a step."""
-        return bool(self.turns.any())
+        return bool((self.step[:, :8] != self.step[:, :1]).any())
 
     @property
     def turns(self) -> np.ndarray:
