@@ -210,8 +210,8 @@ def _check_detours(problem, costs: Costs) -> None:
     k = next(k for k in range(problem.n_obj) if not np.array_equal(costs.take([k]).direct, DIRECT))
     raise CapabilityError(
         f"by the objective {problem.objective_names[k]!r} two steps may cost less than the one that leads to the same "
-        f"cell, and the {problem.representation.name} representation codes that one alone; expected the representation 'cells' for an "
-        f"exact front"
+        f"cell, and the {problem.representation.name} representation codes that one alone; "
+        f"expected the representation 'cells' for an exact front"
     )
 
 
