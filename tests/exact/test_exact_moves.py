@@ -369,5 +369,5 @@ def test_codings_without_detours_have_no_exact_front_where_a_detour_may_be_bette
         with pytest.raises(CapabilityError, match=f"by the objective '{own.name}' two steps may cost less .* 'cells'"):
             exact_front(problem)
         assert problem.pareto_front() is None
-    metres, toll = Ways("metres", moves=(0.05, 0.07)), Cost("toll", np.arange(144.0).reshape(12, 12))
+    metres, toll = Ways("metres", moves=(0.05, 0.07)), Cost("toll", np.random.default_rng(1).integers(0, 9, size=(12, 12)))
     assert len(GridPathProblem(grid, (0, 0), (11, 11), "integer", [metres, toll]).pareto_front(max_seconds=60)) > 1
