@@ -45,8 +45,8 @@ class Objective(ABC):
     """A quantity of a path to be minimised.
 
     Subclass it to add one of your own: set `name` and `label`, and say what a path costs. There are three kinds of costs, which
-    add up where an objective has several: of each visited cell (`field`), of each move from a cell to the next (`moves`), and of
-    turning (`turn_cost`). None is negative; whole numbers, truth values and short floats count as floats. What adds up
+    add up where an objective has several: of each visited cell (`field`), of each move from a cell to the next (`moves`), and
+    of turning (`turn_cost`). None is negative; whole numbers, truth values and short floats count as floats. What adds up
     has an exact front and needs no code to score paths. Another quantity is computed from the paths by ``__call__``.
 
     Attributes

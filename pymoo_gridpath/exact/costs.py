@@ -69,7 +69,7 @@ class Costs(NamedTuple):
     @property
     def with_heading(self) -> bool:
         """Whether some cost depends on the heading before a step."""
-        return bool(self.turns.any())
+        return bool((self.step[:, :8] != self.step[:, :1]).any())
 
     @property
     def turns(self) -> np.ndarray:
@@ -188,8 +188,8 @@ def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.n
     cells, steps = field_of(objective, grid, moves.box), moves_of(objective, grid)
     if cells is None and steps is None and not turn:
         raise CapabilityError(
-            f"the objective {name!r} has no field, costs of moves or turn_cost, so it does not add up along a path and no exact "
-            f"front is known; expected length, turn, or objectives that are sums of such costs"
+            f"the objective {name!r} has no field, costs of moves or turn_cost, so it does not add up along a path and no "
+            f"exact front is known; expected length, turn, or objectives that are sums of such costs"
         )
     pair = np.array(steps if isinstance(steps, tuple) else (0.0, 0.0))
     nothing = np.zeros(moves.n_cells, dtype=np.int64)

@@ -191,7 +191,7 @@ def _search(
     points = front.points[:, np.argsort(order)] + costs.field[:, start]
     lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
     parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.off, costs.rounded)]
-    finer = [_cheap_part(points[:, k], costs, k, moves, usable, start) for k in np.flatnonzero(costs.rounded)]
+    finer = [_cheap_part(points[:, k], costs, k, moves, usable, start) for k in np.flatnonzero(costs.rounded).tolist()]
     del costs, front
     for part in finer:
         if part is not None and not meter.message:
@@ -209,9 +209,9 @@ def _check_detours(problem, costs: Costs) -> None:
         return
     k = next(k for k in range(problem.n_obj) if not np.array_equal(costs.take([k]).direct, DIRECT))
     raise CapabilityError(
-        f"by the objective {problem.objective_names[k]!r} two steps may cost less than the one that leads to the same cell, and "
-        f"the {problem.representation.name} representation codes that one alone; expected the representation 'cells' for an "
-        f"exact front"
+        f"by the objective {problem.objective_names[k]!r} two steps may cost less than the one that leads to the same "
+        f"cell, and the {problem.representation.name} representation codes that one alone; "
+        f"expected the representation 'cells' for an exact front"
     )
 
 

@@ -155,19 +155,20 @@ def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter) 
 def _follow(moves: Moves, costs: Costs, searched: Costs, found, start: int, goal: int):
     """Return costs and cells of the path from the start that a search, in other costs or another order, found cheapest."""
     search, ahead = found
-    best, first = (UNREACHABLE, UNREACHABLE), -1
+    best, first, with_heading = (UNREACHABLE, UNREACHABLE), -1, costs.with_heading
     for m in range(8):
         # No heading comes before the first step.
         if moves.legal[start] >> m & 1:
             cell = start + int(moves.offsets[m])
-            rest = search[:, 8 * cell + m if costs.with_heading else cell]
-            into = searched.field[:, cell] + (0 if searched.enter is None else searched.enter[:, cell, m])
-            total = tuple(int(searched.step[k, 8, m] + into[k] + rest[k]) for k in range(2))
+            rest = search[:, 8 * cell + m if with_heading else cell]
+            total = tuple(int(searched.step[k, 8, m] + searched.field[k, cell] + rest[k]) for k in range(2))
+            if searched.enter is not None:
+                total = tuple(total[k] + int(searched.enter[k, cell, m]) for k in range(2))
             if total < best:
                 best, first = total, m
     total = np.zeros(2, dtype=np.int64)
     path = np.empty(moves.n_cells + 1, dtype=np.int64)
-    arrays = costs.step, costs.field, costs.enter, costs.with_heading
+    arrays = costs.step, costs.field, costs.enter, with_heading
     n = follow(moves.offsets, *arrays, ahead, start, first, goal, total, path)
     return (int(total[0]), int(total[1])), path[:n].copy()
 
@@ -207,10 +208,8 @@ def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent:
 
     None if a budget is used up before. States from which no path below the corner goes on have no finite sum.
     """
-    step, field, enter = (
-        None if values is None else np.stack([_weighted(values, weights), values[0]])
-        for values in (costs.step, costs.field, costs.enter)
-    )
+    step, field = (np.stack([_weighted(values, weights), values[0]]) for values in (costs.step, costs.field))
+    enter = None if costs.enter is None else np.stack([_weighted(costs.enter, weights), costs.enter[0]])
     # One unit beyond the corner lies what labels stay below, see _corners of the label search; and one more for rounding.
     limit = int((weights[0] * (corner[0] + 1) + weights[1] * (corner[1] + 1)) * (1 + 1e-12)) + 2
     weighted = _weighted(spent, weights)

@@ -29,8 +29,9 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
 
     Labels are popped in lexicographic order, so that the first objective needs no comparison: a label is dominated if and only
     if one of the pairs (g2, g3) closed so far at its state is. With headings, a pair counts for the other headings of the
-    cell too, by the turn that it takes to get there, where that is no matter of the first objective. Where steps are limited they are counted as well: a label with fewer
-    steps is not dominated before the goal, since what leads on from it may take more.
+    cell too, by the turn that it takes to get there, where that costs nothing in the first objective. Where steps are limited
+    they are counted as well: a label with fewer steps is not dominated before the goal, since what leads on from it may take
+    more.
 
     Parameters
     ----------

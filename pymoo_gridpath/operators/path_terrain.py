@@ -38,7 +38,7 @@ def _known_of(problem) -> tuple[Terrain, list[int]]:
         fields = [visiting_costs(objective, problem.grid, representation.box) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)
-        terrain = make_terrain(moves, start, goal, [field for field in fields if field is not None])
+        terrain = make_terrain(moves, start, goal, [np.asarray(field) for field in fields if field is not None])
         terms = list(range(1, terrain.n_terms))
         # What tells straight steps from diagonal ones goes by the length.
         if not terms or any(isinstance(moves_of(objective, problem.grid), tuple) for objective in problem.objectives):

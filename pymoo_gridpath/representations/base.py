@@ -106,6 +106,7 @@ class Representation(ABC):
     max_cells: int | None = None
     paper: bool = False
     monotone: bool = False
+    codes_detours: bool = True
     wants_fields: bool = False
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int]):

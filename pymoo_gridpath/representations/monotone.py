@@ -44,6 +44,7 @@ class MonotoneRepresentation(Representation):
 
     codes_detours = False
     monotone = True
+    codes_detours = False
     paper = True
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int], axis: Axis = "auto"):

@@ -98,7 +98,8 @@ class ObjectiveSuite:
 
     def test_paths_that_are_none_score_a_number(self):
         for _, problem, _ in self._queries():
-            X = np.random.default_rng(1).integers(problem.xl, problem.xu, size=(20, problem.n_var), endpoint=True)
+            coding = problem.representation
+            X = np.random.default_rng(1).integers(coding.xl, coding.xu, size=(20, coding.n_var), endpoint=True)
             assert np.isfinite(problem.score(problem.decode(X))).all()
 
     def test_it_pickles(self):
@@ -134,8 +135,9 @@ class ObjectiveSuite:
         others = [name for name in ("length", "turn") if name != self.objective.name][:1]
         problem = GridPathProblem(grid, (0, 0), (grid.width - 1, grid.height - 1), "cells", [self.objective, *others])
         result = minimize(problem, NSGA2(pop_size=12, **path_operators(problem)), ("n_gen", 4), seed=1)
-        np.testing.assert_array_equal(problem.evaluate(result.X), result.F)
-        assert (problem.decode(np.atleast_2d(result.X)).interfering_cells == 0).all()
+        X = np.atleast_2d(np.asarray(result.X))
+        np.testing.assert_array_equal(problem.evaluate(X), np.atleast_2d(np.asarray(result.F)))
+        assert (problem.decode(X).interfering_cells == 0).all()
 
 
 def slow_score(objective: Objective, grid: OccupancyGrid, cells: tuple[Cell, ...]) -> float:
@@ -145,16 +147,15 @@ def slow_score(objective: Objective, grid: OccupancyGrid, cells: tuple[Cell, ...
     if objective.combine != "sum":
         return min(visited) if objective.combine == "least" else max(visited)
     headings = [STEPS.index((b[0] - a[0], b[1] - a[1])) for a, b in itertools.pairwise(cells)]
-    steps = [] if moves is None else np.asarray(moves, dtype=float)
+    steps = np.zeros(2) if moves is None else np.asarray(moves, dtype=float)
     for heading, (x, y) in zip(headings, cells[1:], strict=True):
-        if moves is not None:
-            visited.append(float(steps[heading % 2] if np.ndim(steps) == 1 else steps[heading, y, x]))
+        visited.append(float(steps[heading % 2] if steps.ndim == 1 else steps[heading, y, x]))
     return sum(visited) + objective.turn_cost * sum(itertools.starmap(turn_between, itertools.pairwise(headings)))
 
 
 def _scores(problem: GridPathProblem, paths) -> np.ndarray:
     """Return the scores of paths by their cells in the one objective of a problem."""
-    rows = np.full((len(paths), problem.n_var), problem.xu[-1])
+    rows = np.full((len(paths), problem.n_var), problem.representation.xu[-1])
     for row, cells in zip(rows, paths, strict=True):
         row[: len(cells)] = [y * problem.grid.width + x for x, y in cells]
     return problem.score(problem.decode(rows))[:, 0]

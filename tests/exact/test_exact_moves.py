@@ -363,11 +363,11 @@ def test_equal_costs_of_unequal_moves_give_the_path_of_fewest_cells():
 
 
 def test_codings_without_detours_have_no_exact_front_where_a_detour_may_be_better():
-    grid, ten, guards = guarded(12, 1)
+    grid, _, guards = guarded(12, 1)
     for own in (guards, Ways("dear", moves=(1.0, 3.0))):
         problem = GridPathProblem(grid, (0, 0), (11, 11), "integer", ["length", own])
         with pytest.raises(CapabilityError, match=f"by the objective '{own.name}' two steps may cost less .* 'cells'"):
             exact_front(problem)
         assert problem.pareto_front() is None
-    metres, toll = Ways("metres", moves=(0.05, 0.07)), Cost("toll", np.arange(144.0).reshape(12, 12))
+    metres, toll = Ways("metres", moves=(0.05, 0.07)), Cost("toll", np.random.default_rng(1).integers(0, 9, size=(12, 12)))
     assert len(GridPathProblem(grid, (0, 0), (11, 11), "integer", [metres, toll]).pareto_front(max_seconds=60)) > 1

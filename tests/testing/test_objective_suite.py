@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from pymoo_gridpath.neighbourhood import HEADINGS
+from pymoo_gridpath.neighbourhood import HEADING_OF, HEADINGS
 from pymoo_gridpath.objectives import Length, Objective, Turn, Vulnerability
 from pymoo_gridpath.testing.objectives import ObjectiveSuite
 
@@ -102,19 +102,12 @@ class FromTheCellLeft(Climb):
 
     def __call__(self, paths, prepared):
         cells, offsets = paths.sequences
-        width, flat = paths.grid.width, prepared.moves.reshape(8, -1)
+        dx, dy = (np.sign(np.diff(part)) for part in (cells % paths.grid.width, cells // paths.grid.width))
+        heading = HEADING_OF[dy + 1, dx + 1]
         total = []
         for begin, end in itertools.pairwise(offsets):
-            path = cells[begin:end]
-            steps = [
-                next(
-                    m
-                    for m, (dx, dy) in enumerate(HEADINGS)
-                    if (np.sign(b % width - a % width), np.sign(b // width - a // width)) == (dx, dy)
-                )
-                for a, b in itertools.pairwise(path)
-            ]
-            total.append(sum(flat[m, a] for m, a in zip(steps, path, strict=False)))
+            steps = slice(begin, end - 1)
+            total.append(prepared.moves.reshape(8, -1)[heading[steps], cells[steps]].sum())
         return np.array(total)
 
 
