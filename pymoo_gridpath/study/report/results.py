@@ -20,6 +20,7 @@ from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, has_own_budget,
 from pymoo_gridpath.study.report.statistics.summaries import first_reaching
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
 from pymoo_gridpath.study.running.store import Store, readable
+from pymoo_gridpath.study.specification.kinds import objective_name
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,7 +255,7 @@ def _check_objectives(plan: Plan, problem: int, records: dict[str, tuple[RunReco
     """Refuse a plan that somebody changed, so that its runs are of other problems."""
     planned = plan.problems[problem]
     for key, (record, _) in records.items():
-        if record is not None and record.objectives != planned.spec["objectives"]:
+        if record is not None and record.objectives != [objective_name(one) for one in planned.spec["objectives"]]:
             raise GridPathError(
                 f"the run {key} has the objectives {', '.join(record.objectives)}, expected those of the problem "
                 f"{checks.shown(planned.label)} in plan.json; `study run` writes it anew"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import inspect
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
@@ -47,7 +46,7 @@ def objective_name(content: Any) -> str:
 
 def objective_label(content: Any) -> str:
     """Return how figures call an objective in canonical form, with its unit."""
-    return _of_package(Objective)[content].label if isinstance(content, str) else content["label"]
+    return of_package(Objective)[content].label if isinstance(content, str) else content["label"]
 
 
 def representation_entry(form: Any) -> Any:
@@ -58,22 +57,22 @@ def representation_entry(form: Any) -> Any:
 
 def is_monotone(content: Any) -> bool:
     """Whether paths of a representation in canonical form advance along an axis."""
-    return _is_monotone(_of_package(Representation)[content]) if isinstance(content, str) else content["monotone"]
+    return _is_monotone(of_package(Representation)[content]) if isinstance(content, str) else content["monotone"]
 
 
 def is_of_paper(content: Any) -> bool:
     """Whether the default operators of a representation in canonical form are those of the paper."""
-    return _is_of_paper(_of_package(Representation)[content]) if isinstance(content, str) else content["paper"]
+    return _is_of_paper(of_package(Representation)[content]) if isinstance(content, str) else content["paper"]
 
 
 @functools.cache
-def _of_package(base: Any) -> dict[str, Any]:
+def of_package(base: Any) -> dict[str, Any]:
     """Return the classes of this package by name, for those who read what was stored: a registry may import others."""
     found, queue = {}, [base]
     while queue:
         cls = queue.pop()
         queue += cls.__subclasses__()
-        if cls.__module__.startswith("pymoo_gridpath.") and not inspect.isabstract(cls):
+        if cls.__module__.startswith("pymoo_gridpath.") and isinstance(getattr(cls, "name", None), str):
             found[cls.name] = cls
     return found
 
