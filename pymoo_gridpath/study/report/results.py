@@ -233,7 +233,7 @@ def collect(store: Store, target: float | None = None) -> Results:
             else:
                 result = RunResult(run.key, run.problem, run.algorithm, run.seed, status)
                 if record is not None:
-                    _measure(result, record, reference.front, results.target, keep_front=problem in keep)
+                    measure(result, record, reference.front, results.target, keep_front=problem in keep)
                 measured[run.key] = result
     results.runs = [measured[run.key] for run in plan.runs if run.algorithm is not None]
     return results
@@ -295,7 +295,7 @@ def _reference(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | No
     return ProblemReference(ReferenceFront(merge_fronts([empty, *fronts]), exact=False), reason, seconds, False)
 
 
-def _measure(result: RunResult, record: RunRecord, front: ReferenceFront, target: float, keep_front: bool) -> None:
+def measure(result: RunResult, record: RunRecord, front: ReferenceFront, target: float, keep_front: bool) -> None:
     """Enter what a record says, and its measures if it is finished."""
     result.message, result.complete = record.message, record.complete
     if record.status != "finished":
