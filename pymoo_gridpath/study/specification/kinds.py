@@ -13,7 +13,7 @@ from pymoo.core.repair import Repair
 from pymoo.core.sampling import Sampling
 
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
-from pymoo_gridpath.representations import REPRESENTATIONS, MonotoneRepresentation, Representation
+from pymoo_gridpath.representations import REPRESENTATIONS, Representation
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.own import Kind
 
@@ -51,18 +51,18 @@ def objective_label(content: Any) -> str:
 
 def representation_entry(form: Any) -> Any:
     """Return a representation of a study in canonical form."""
-    given = own.read(form, REPRESENTATION, ("representation",))
-    return own.entry(given, monotone=_is_monotone(given.cls), paper=_is_of_paper(given.cls))
+    given: Any = own.read(form, REPRESENTATION, ("representation",))
+    return own.entry(given, monotone=given.cls.monotone, paper=given.cls.paper)
 
 
 def is_monotone(content: Any) -> bool:
     """Whether paths of a representation in canonical form advance along an axis."""
-    return _is_monotone(of_package(Representation)[content]) if isinstance(content, str) else content["monotone"]
+    return of_package(Representation)[content].monotone if isinstance(content, str) else content["monotone"]
 
 
 def is_of_paper(content: Any) -> bool:
     """Whether the default operators of a representation in canonical form are those of the paper."""
-    return _is_of_paper(of_package(Representation)[content]) if isinstance(content, str) else content["paper"]
+    return of_package(Representation)[content].paper if isinstance(content, str) else content["paper"]
 
 
 @functools.cache
@@ -75,14 +75,6 @@ def of_package(base: Any) -> dict[str, Any]:
         if cls.__module__.startswith("pymoo_gridpath.") and isinstance(getattr(cls, "name", None), str):
             found[cls.name] = cls
     return found
-
-
-def _is_monotone(cls: type) -> bool:
-    return issubclass(cls, MonotoneRepresentation)
-
-
-def _is_of_paper(cls: type) -> bool:
-    return issubclass(cls, MonotoneRepresentation)
 
 
 def operator_slots(cls: type) -> list[str]:
