@@ -131,8 +131,8 @@ def _by_problem(rows: list[tuple[str, str, Result]]) -> dict[str, list[tuple[str
     found: dict[str, list[tuple[str, Result]]] = {}
     for label, algorithm, result in rows:
         runs = found.setdefault(label, [])
-        first = runs[0][1].problem if runs else result.problem
-        other = result.problem
+        first: Any = runs[0][1].problem if runs else result.problem
+        other: Any = result.problem
         same = first is other or (
             (first.grid, first.start, first.goal) == (other.grid, other.start, other.goal)
             and repr(first.objectives) == repr(other.objectives)
@@ -167,7 +167,7 @@ def _measured(by_problem: dict[str, list[tuple[str, Result]]], name: str, target
     return measured
 
 
-def _reference(problem: GridPathProblem, fronts: list[np.ndarray]) -> ProblemReference:
+def _reference(problem: Any, fronts: list[np.ndarray]) -> ProblemReference:
     front = problem.pareto_front()
     if front is None:
         reason = "the problem has no exact front, or none that was found in a short time"
@@ -178,7 +178,8 @@ def _reference(problem: GridPathProblem, fronts: list[np.ndarray]) -> ProblemRef
 
 def _record(result: Result, number: int) -> RunRecord:
     """Return a run as a study would store it, but for its history."""
-    algorithm, problem = result.algorithm, result.problem
+    algorithm: Any = result.algorithm
+    problem: Any = result.problem
     members = Members(algorithm)
     front = members.front()
     seed = getattr(algorithm, "seed", None)
@@ -207,7 +208,7 @@ def _record(result: Result, number: int) -> RunRecord:
     )
 
 
-def _problem(problem: GridPathProblem) -> dict[str, Any]:
+def _problem(problem: Any) -> dict[str, Any]:
     """Return what a report says of a problem, in the form in which studies have it."""
     return {
         "grid": pack_grid(problem.grid)[0],

@@ -36,7 +36,7 @@ class Kind(NamedTuple):
 
     word: str
     base: type
-    known: Mapping[str, Any]
+    known: Any
 
 
 class Given(NamedTuple):
@@ -135,7 +135,9 @@ def class_of(content: Any, kind: Kind) -> type:
     GridPathError
         If it cannot be imported here, or its code is not what the study was planned with.
     """
-    name = content if isinstance(content, str) else content["class"]
+    if isinstance(content, str):
+        return kind.known[content]
+    name = content["class"]
     if not is_path(name):
         return kind.known[name]
     cls = _imported(name, kind)
