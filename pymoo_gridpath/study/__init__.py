@@ -14,6 +14,7 @@ _HOMES = {
     "RunRecord": "running.record",
     "Store": "running.store",
     "Study": "specification.study",
+    "compare": "report.comparison",
     "dask_executor": "running.executors",
     "load_study": "specification.toml_file",
     "plan_study": "planning.expand",

@@ -99,7 +99,11 @@ def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> Grid
         objectives = [one if isinstance(one, str) else own.make(one, OBJECTIVE) for one in problem["objectives"]]
         representation, axis = problem["representation"], problem["axis"]
         if not isinstance(representation, str):
-            representation, axis = build_representation(representation, cells, *query, axis), "auto"
+            if representation["arguments"]:
+                representation, axis = build_representation(representation, cells, *query, axis), "auto"
+            else:
+                # As a class, which is told of the objectives if it asks.
+                representation = own.class_of(representation, REPRESENTATION)
         made = GridPathProblem(cells, *query, representation, objectives, axis=axis, **settings)
         _problems[key] = made
         while len(_problems) > KEPT_PROBLEMS:
@@ -111,6 +115,8 @@ def build_representation(content: Any, grid: OccupancyGrid, start, goal, axis: A
     """Return a representation in canonical form for a query on a grid."""
     if isinstance(content, str):
         return make_representation(content, grid, start, goal, axis)
+    if not content["arguments"]:
+        return make_representation(own.class_of(content, REPRESENTATION), grid, start, goal, axis)
     if not content["monotone"] and axis != "auto":
         raise GridPathError(f"axis is {axis!r}, but paths of {own.shown(content)} advance along none; expected 'auto'")
     return own.make(content, REPRESENTATION, grid, start, goal, **({"axis": axis} if content["monotone"] else {}))

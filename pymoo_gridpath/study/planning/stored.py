@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pymoo_gridpath.errors import CapabilityError, StudyError
+from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
+from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.planners import Planner, reference_planner
-from pymoo_gridpath.study.planning import canonical
-from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.representations import Representation
+from pymoo_gridpath.study.planning.canonical import DEFAULT_POP_SIZE
+from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec
+from pymoo_gridpath.study.specification.kinds import SLOTS, is_monotone, objective_name, of_package
 from pymoo_gridpath.study.specification.operators import planner_of
 from pymoo_gridpath.study.specification.problem import ProblemSpec, RandomFamily
 from pymoo_gridpath.study.specification.study import Study
@@ -97,12 +101,56 @@ def _check_problem(problem: Mapping[str, Any], where: Where) -> None:
         if not (0 <= x < width and 0 <= y < height):
             raise StudyError(f"{role} is {values.show(spec[role])}, expected a cell of {width} x {height}", (*place, role))
     settings = {key: spec[key] for key in _SETTINGS}
+    settings["objectives"] = names = _own_objectives(spec["objectives"], (*place, "objectives"))
+    settings["representation"] = _own_representation(spec["representation"], (*place, "representation"))
     made = _at(place, make_spec, ProblemSpec, {"map": "checked", **settings}, ())
-    if not isinstance(spec["objectives"], list) or list(made.objectives) != spec["objectives"]:
+    if list(made.objectives) != names:
         raise StudyError(f"objectives is {values.show(spec['objectives'])}, expected a list of names", (*place, "objectives"))
     if spec["representation"] is None or (spec["penalty"] is None) != (spec["obstacles"] == "constraint"):
         key = "representation" if spec["representation"] is None else "penalty"
         raise StudyError(f"{key} is {values.show(spec[key])}, expected what the problem is solved with", (*place, key))
+
+
+# Of things that a study's author brought along, a plan says enough: nothing is imported because a file names it.
+
+
+def _own_objectives(given: Any, where: Where) -> list[Any]:
+    """Return the objectives that have names in this package, or one in their place, once those of others have been checked."""
+    if not isinstance(given, list):
+        raise StudyError(f"objectives is {values.show(given)}, expected a list of names", where)
+    for one in given:
+        if isinstance(one, Mapping):
+            own.check_entry(one, "objective", where, name=str, label=str)
+        elif isinstance(one, str) and one not in of_package(Objective):
+            raise StudyError(f"there is no objective {values.show(one)}; {nearest(one, of_package(Objective))}", where)
+    names = [one for one in given if not isinstance(one, Mapping)]
+    if len({objective_name(one) for one in given if isinstance(one, str | Mapping)}) < len(given):
+        raise StudyError(f"objectives is {values.show(given)}, expected each once", where)
+    return names if names or not given else ["length"]
+
+
+def _own_representation(given: Any, where: Where) -> Any:
+    """Return a representation that has a name in this package, or one in its place, once that of others has been checked."""
+    if isinstance(given, Mapping):
+        own.check_entry(given, "representation", where, monotone=bool, paper=bool)
+        return next(name for name in of_package(Representation) if is_monotone(name) is given["monotone"])
+    if isinstance(given, str):
+        values.choice(given, of_package(Representation), where)
+    return given
+
+
+def _own_algorithm(spec: dict[str, Any], where: Where) -> dict[str, Any]:
+    """Return what stands in for an algorithm that is not of this package or pymoo, once that has been checked."""
+    place = (*where, "algorithm")
+    own.check_entry(spec["algorithm"], "algorithm", place, deterministic=bool, reference=bool, pop_size=bool, slots=list)
+    takes = {"pop_size": spec["algorithm"]["pop_size"], "operators": spec["algorithm"]["slots"]}
+    spec = _table(spec, ("algorithm", "parameters", *(key for key in takes if takes[key])), where, "the algorithm")
+    values.table(spec["parameters"], (*where, "parameters"))
+    return {"pop_size": DEFAULT_POP_SIZE, "smoothness": None, "operators": {"base": "default"}} | {
+        **spec,
+        "algorithm": next(name for name, row in CAPABILITIES.items() if not row.unfit and not row.needs),
+        "parameters": {},
+    }
 
 
 def _at(place: Where, function, *arguments) -> Any:
@@ -153,18 +201,27 @@ def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str,
     elif _planner_of(spec.get("algorithm")) is not None:
         spec = _planner(spec, place)
     else:
+        if isinstance(spec.get("algorithm"), Mapping):
+            spec = _own_algorithm(spec, place)
+        elif own.is_path(spec.get("algorithm")):
+            raise StudyError(f"algorithm is {values.show(spec['algorithm'])}, expected what a plan says of it", place)
         keys = ("algorithm", "pop_size", "smoothness", "operators", "parameters")
         spec = _table(spec, keys, place, "the algorithm")
-        operators = _table(spec["operators"], ("base",), (*place, "operators"), "operators", tuple(canonical.SLOTS))
+        operators = _table(spec["operators"], ("base",), (*place, "operators"), "operators", tuple(SLOTS))
         for slot, single in operators.items():
-            if slot != "base":
-                values.table(single, (*place, "operators", slot))
+            if slot != "base" and own.is_path(values.table(single, (*place, "operators", slot)).get("class")):
+                own.check_entry(single, slot, (*place, "operators", slot))
+        kept = {slot: one for slot, one in operators.items() if slot == "base" or not own.is_path(one.get("class"))}
+        spec["operators"] = kept
         values.table(spec["parameters"], (*place, "parameters"))
         values.whole(spec["pop_size"], (*place, "pop_size"), 2, values.MAX_POP_SIZE)
     overrides = _table(algorithm["overrides"], (), (*where, "overrides"), "overrides", _OVERRIDES)
     for key, value in overrides.items():
         if value is None:
             raise StudyError(f"{key} is none, expected a change to the problem", (*where, "overrides", key))
+    if "representation" in overrides:
+        where_of = (*where, "overrides", "representation")
+        overrides = {**overrides, "representation": _own_representation(overrides["representation"], where_of)}
     made = _at(place, make_spec, AlgorithmSpec, {**spec, **overrides}, ())
     if "algorithm" in spec and spec["algorithm"] != made.algorithm:
         shown = values.show(spec["algorithm"])

@@ -20,6 +20,7 @@ from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, has_own_budget,
 from pymoo_gridpath.study.report.statistics.summaries import first_reaching
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
 from pymoo_gridpath.study.running.store import Store, readable
+from pymoo_gridpath.study.specification.kinds import objective_name
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +233,7 @@ def collect(store: Store, target: float | None = None) -> Results:
             else:
                 result = RunResult(run.key, run.problem, run.algorithm, run.seed, status)
                 if record is not None:
-                    _measure(result, record, reference.front, results.target, keep_front=problem in keep)
+                    measure(result, record, reference.front, results.target, keep_front=problem in keep)
                 measured[run.key] = result
     results.runs = [measured[run.key] for run in plan.runs if run.algorithm is not None]
     return results
@@ -254,7 +255,7 @@ def _check_objectives(plan: Plan, problem: int, records: dict[str, tuple[RunReco
     """Refuse a plan that somebody changed, so that its runs are of other problems."""
     planned = plan.problems[problem]
     for key, (record, _) in records.items():
-        if record is not None and record.objectives != planned.spec["objectives"]:
+        if record is not None and record.objectives != [objective_name(one) for one in planned.spec["objectives"]]:
             raise GridPathError(
                 f"the run {key} has the objectives {', '.join(record.objectives)}, expected those of the problem "
                 f"{checks.shown(planned.label)} in plan.json; `study run` writes it anew"
@@ -294,7 +295,7 @@ def _reference(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | No
     return ProblemReference(ReferenceFront(merge_fronts([empty, *fronts]), exact=False), reason, seconds, False)
 
 
-def _measure(result: RunResult, record: RunRecord, front: ReferenceFront, target: float, keep_front: bool) -> None:
+def measure(result: RunResult, record: RunRecord, front: ReferenceFront, target: float, keep_front: bool) -> None:
     """Enter what a record says, and its measures if it is finished."""
     result.message, result.complete = record.message, record.complete
     if record.status != "finished":

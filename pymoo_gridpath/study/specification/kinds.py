@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import inspect
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
@@ -47,33 +46,33 @@ def objective_name(content: Any) -> str:
 
 def objective_label(content: Any) -> str:
     """Return how figures call an objective in canonical form, with its unit."""
-    return _of_package(Objective)[content].label if isinstance(content, str) else content["label"]
+    return of_package(Objective)[content].label if isinstance(content, str) else content["label"]
 
 
 def representation_entry(form: Any) -> Any:
     """Return a representation of a study in canonical form."""
-    given = own.read(form, REPRESENTATION, ("representation",))
+    given: Any = own.read(form, REPRESENTATION, ("representation",))
     return own.entry(given, monotone=given.cls.monotone, paper=given.cls.paper)
 
 
 def is_monotone(content: Any) -> bool:
     """Whether paths of a representation in canonical form advance along an axis."""
-    return _of_package(Representation)[content].monotone if isinstance(content, str) else content["monotone"]
+    return of_package(Representation)[content].monotone if isinstance(content, str) else content["monotone"]
 
 
 def is_of_paper(content: Any) -> bool:
     """Whether the default operators of a representation in canonical form are those of the paper."""
-    return _of_package(Representation)[content].paper if isinstance(content, str) else content["paper"]
+    return of_package(Representation)[content].paper if isinstance(content, str) else content["paper"]
 
 
 @functools.cache
-def _of_package(base: Any) -> dict[str, Any]:
+def of_package(base: Any) -> dict[str, Any]:
     """Return the classes of this package by name, for those who read what was stored: a registry may import others."""
     found, queue = {}, [base]
     while queue:
         cls = queue.pop()
         queue += cls.__subclasses__()
-        if cls.__module__.startswith("pymoo_gridpath.") and not inspect.isabstract(cls):
+        if cls.__module__.startswith("pymoo_gridpath.") and isinstance(getattr(cls, "name", None), str):
             found[cls.name] = cls
     return found
 

@@ -139,7 +139,9 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
         if key not in arguments:
             hint = nearest(key, arguments, "it takes") if arguments else "it takes none"
             raise StudyError(f"{name} takes no argument {values.show(key)}; {hint}", (*where, key))
-        if isinstance(arguments[key], int | float) or key == "prob_var":
+        # A plan says none where that is the default.
+        by_default = table[key] is None and arguments[key] is None
+        if isinstance(arguments[key], int | float) or (key == "prob_var" and not by_default):
             values.number(table[key], (*where, key))
     for key, item in inspect.signature(classes[name]).parameters.items():
         if key in arguments and item.default is item.empty and key not in table:

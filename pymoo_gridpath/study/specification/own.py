@@ -36,7 +36,7 @@ class Kind(NamedTuple):
 
     word: str
     base: type
-    known: Mapping[str, Any]
+    known: Any
 
 
 class Given(NamedTuple):
@@ -103,6 +103,30 @@ def shown(content: Any) -> str:
     return f"{name}({settings})" if settings else name
 
 
+def check_entry(content: Any, word: str, where: Where, **facts: type) -> None:
+    """Refuse what is no thing in canonical form, as something that was stored may hold; nothing is imported.
+
+    Parameters
+    ----------
+    content : object
+    word : str
+        What messages call such a thing.
+    where : tuple
+    **facts : type
+        What has to be known of it, and as what.
+    """
+    table = values.table(content, where)
+    name = table.get("class")
+    if not isinstance(name, str) or (is_path(name) and not PATH.fullmatch(name)):
+        raise StudyError(f"the {word} has the class {values.show(name)}, expected 'package.module:Class'", (*where, "class"))
+    kinds = {"class": str, "arguments": dict, **({"code": str} if is_path(name) else {}), **facts}
+    values.check_keys(table, kinds, where, f"the {word}")
+    for key, kind in kinds.items():
+        if not isinstance(table.get(key), kind):
+            expected = {str: "a text", dict: "a table", bool: "true or false", list: "a list"}[kind]
+            raise StudyError(f"{key} is {values.show(table.get(key))}, expected {expected}", (*where, key))
+
+
 def class_of(content: Any, kind: Kind) -> type:
     """Return the class of something in canonical form, in whatever process.
 
@@ -111,7 +135,9 @@ def class_of(content: Any, kind: Kind) -> type:
     GridPathError
         If it cannot be imported here, or its code is not what the study was planned with.
     """
-    name = content if isinstance(content, str) else content["class"]
+    if isinstance(content, str):
+        return kind.known[content]
+    name = content["class"]
     if not is_path(name):
         return kind.known[name]
     cls = _imported(name, kind)

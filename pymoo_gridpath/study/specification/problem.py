@@ -192,7 +192,7 @@ def _objectives(value: Any) -> tuple[Any, ...]:
     """Return objectives by name, by the path of their class, or as tables of class and arguments."""
     where = ("objectives",)
     try:
-        items = [value] if isinstance(value, str | type | Objective) else checks.items("objectives", value, "names")
+        items: list[Any] = [value] if isinstance(value, str | type | Objective) else checks.items("objectives", value, "names")
     except GridPathError:
         items = [None]
     if not all(isinstance(item, str | type | Mapping | Objective) for item in items):

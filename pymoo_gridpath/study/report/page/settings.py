@@ -33,10 +33,10 @@ _OPERATORS = {
 def settings_blocks(results: Results, times: bool) -> Iterator[Block]:
     """Yield what the runs have in common, the tables of problems and algorithms, and the study file if there is one."""
     plan = results.plan
-    (kind, amount), *_ = plan.budget.items()
     seeds = sorted({run.seed for run in results.runs if not results.is_deterministic(run.algorithm)})
     yield Heading("Settings")
-    words = f"Budget of each run: {amount} {kind}. Seeds: {_ranges(seeds)}. Target: hypervolume ratio {results.target:g}."
+    words = "".join(f"Budget of each run: {amount} {kind}. " for kind, amount in plan.budget.items())
+    words += f"Seeds: {_ranges(seeds)}. Target: hypervolume ratio {results.target:g}."
     if plan.reference is not None:
         words += f" Search for each exact front: {_other(plan.reference)}."
     yield Text(words)

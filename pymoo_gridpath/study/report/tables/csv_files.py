@@ -13,6 +13,8 @@ from pymoo_gridpath.study.report.statistics.comparisons import Comparison, could
 from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.summary import n_reached
 from pymoo_gridpath.study.report.tables.table import csv_text
+from pymoo_gridpath.study.specification import own
+from pymoo_gridpath.study.specification.kinds import objective_name
 
 _MEASURES = ("ratio", "igd_plus", "share", "turn", "evaluations_to_target", "seconds_to_target", "n_eval", "seconds")
 _TIMES = ("seconds_to_target", "seconds")
@@ -82,8 +84,9 @@ def _problems(results: Results, times: bool) -> tuple[list[str], Iterator[list]]
             kind = "exact" if reference.front.exact else "merged"
             spec = problem.spec
             row = [problem.group, problem.label, *_grid(problem)]
-            row += [" ".join(map(str, spec[key])) for key in ("start", "goal", "objectives")]
-            row += [spec[key] for key in given]
+            row += [" ".join(map(str, spec[key])) for key in ("start", "goal")]
+            row.append(" ".join(map(objective_name, spec["objectives"])))
+            row += [own.shown(spec[key]) if key == "representation" else spec[key] for key in given]
             row += [kind, len(reference.front), reference.reason, _truth(reference.exceeded)]
             yield [*row, reference.seconds] if times else row
 
