@@ -65,7 +65,10 @@ class World:
 
     @cached_property
     def codings(self) -> dict[str, Any]:
-        return {name: cast(Any, cls)(self.grid, **self.query) for name, cls in representations.REPRESENTATIONS.items()}
+        return {
+            name: cast(Any, representations.REPRESENTATIONS[name])(self.grid, **self.query)
+            for name in representations.REPRESENTATIONS
+        }
 
     @cached_property
     def frame(self) -> MonotoneFrame:

@@ -97,7 +97,6 @@ class Representation(ABC):
     [[2, 2, 8, 8, 8, 8, 8, 8, 8]]
     """
 
-    codes_detours = True
     name: str
     vtype: type = int
     n_var: int

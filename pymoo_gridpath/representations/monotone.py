@@ -42,7 +42,6 @@ class MonotoneRepresentation(Representation):
     frame : MonotoneFrame
     """
 
-    codes_detours = False
     monotone = True
     codes_detours = False
     paper = True

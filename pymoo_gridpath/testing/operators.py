@@ -50,13 +50,15 @@ class OperatorSuite:
     def apply(self, operator: Any, problem: Any, X: np.ndarray, seed: int) -> np.ndarray:
         """Return the rows that an operator makes of rows, called as pymoo calls it."""
         rng: Any = np.random.default_rng(seed)
-        pop = Population.new("X", X)
+        pop: Any = Population.new("X", X)
         if isinstance(operator, Sampling):
             return operator(problem, N, random_state=rng).get("X")
         if isinstance(operator, Crossover):
             pairs = np.arange(N).reshape(-1, operator.n_parents)
-            return operator(problem, pop, pairs, random_state=rng).get("X")
-        return operator(problem, pop, random_state=rng).get("X")
+            crossed: Any = operator(problem, pop, pairs, random_state=rng)
+            return crossed.get("X")
+        changed: Any = operator(problem, pop, random_state=rng)
+        return changed.get("X")
 
     @pytest.mark.parametrize("seed", range(3))
     def test_rows_are_whole_numbers_within_the_bounds(self, seed):
@@ -96,23 +98,25 @@ class OperatorSuite:
 
     def test_nothing_is_drawn_from_numpys_global_generator(self):
         problem = self.problem()
-        before = np.random.get_state(legacy=True)[1].copy(), np.random.get_state(legacy=True)[2]  # noqa: NPY002
+        before = _global_state()
         self.apply(self.make(), problem, self.parents(problem), 1)
-        after = np.random.get_state(legacy=True)  # noqa: NPY002
-        assert np.array_equal(after[1], before[0]) and after[2] == before[1]
+        after = _global_state()
+        assert np.array_equal(after[0], before[0]) and after[1] == before[1]
 
     def test_the_array_hook_says_all_where_it_is_said_to(self):
         operator: Any = self.make()
         if not isinstance(operator, Crossover | Mutation) or not mates_on_arrays(operator):
             return
-        problem, operator.prob = self.problem(), 1.0
+        problem = self.problem()
+        operator.__dict__["prob"] = 1.0
         X = self.parents(problem)
         arrays = X.reshape(-1, operator.n_parents, problem.n_var).swapaxes(0, 1) if isinstance(operator, Crossover) else X
         rng = np.random.default_rng(3)
         # pymoo draws who crosses before, and who mutates after.
         if isinstance(operator, Crossover):
             rng.random(arrays.shape[1])
-        made = operator._do(problem, arrays.copy(), random_state=rng).reshape(-1, problem.n_var)
+        children: Any = operator._do(problem, arrays.copy(), random_state=rng)
+        made = children.reshape(-1, problem.n_var)
         assert np.array_equal(made, self.apply(operator, problem, X, 3))
 
     def test_it_pickles(self):
@@ -121,3 +125,9 @@ class OperatorSuite:
 
 def _digest(X: np.ndarray) -> str:
     return hashlib.sha256(np.ascontiguousarray(X, dtype=np.int64).tobytes()).hexdigest()
+
+
+def _global_state() -> tuple[np.ndarray, int]:
+    """Return the state of numpy's global generator, which nothing may draw from."""
+    state: Any = np.random.get_state(legacy=True)  # noqa: NPY002
+    return state[1].copy(), state[2]

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.planners import Planner, reference_planner
 from pymoo_gridpath.representations import Representation
-from pymoo_gridpath.study.planning.canonical import DEFAULT_POP_SIZE
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec

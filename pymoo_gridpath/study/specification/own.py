@@ -201,7 +201,7 @@ def _named(value: Any, kind: Kind, where: Where) -> tuple[type, str]:
         except GridPathError as error:
             raise error if isinstance(error, StudyError) else StudyError(str(error), where) from None
         if cls.__module__.startswith(_PACKAGE):
-            return cls, value
+            return cls, str(value)
     _check_class(cls, kind, where)
     if cls.__module__.startswith(_PACKAGE):
         for name in kind.known:
