@@ -208,8 +208,8 @@ def instance(
 
 
 def function(name: str, value: Any, expected: str, optional: bool = False, error: type[GridPathError] = GridPathError) -> Any:
-    """Return what can be called."""
-    if not callable(value) and not (optional and value is None):
+    """Return what can be called, and is no class."""
+    if (not callable(value) or isinstance(value, type)) and not (optional and value is None):
         raise error(f"{name} is {shown(value)}, expected {expected}")
     return value
 

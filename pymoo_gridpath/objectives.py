@@ -13,7 +13,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField, check_costs, check_variance, obstacle_potential
-from pymoo_gridpath.grid import SQRT2, Box, OccupancyGrid, check_box
+from pymoo_gridpath.grid import SQRT2, Box, OccupancyGrid, check_box, check_grid
 from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths import TURN_UNIT, Paths
 from pymoo_gridpath.registry import Registry
@@ -144,6 +144,9 @@ class Objective(ABC):
         GridPathError
             If a cost is negative, or not finite where a path may go.
         """
+        grid = check_grid(grid)
+        if not all(hasattr(representation, name) for name in ("box", "prepare")):
+            raise GridPathError(f"representation is {shown(representation)}, expected a Representation")
         return prepared(self, representation, boxed_field_of(self, grid, representation.box))
 
     def __call__(self, paths: Paths, prepared: Prepared) -> np.ndarray:

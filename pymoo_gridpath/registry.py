@@ -80,11 +80,13 @@ class Registry(Generic[T]):
         """
         if not (isinstance(thing, type) and issubclass(thing, self.base)):
             raise GridPathError(
-                f"{thing!r} cannot be registered as {self.kind}, expected a class derived from {self.base.__name__}"
+                f"{shown(thing)} cannot be registered as {self.kind}, expected a class derived from {self.base.__name__}"
             )
         name = _name_of(thing) if name is None else name
         if not (isinstance(name, str) and re.fullmatch(r"[\w./+-]+", name)):
-            raise GridPathError(f"the name of the {self.kind} {thing.__name__} is {name!r}, expected letters, digits, - and _")
+            raise GridPathError(
+                f"the name of the {self.kind} {thing.__name__} is {shown(name)}, expected letters, digits, - and _"
+            )
         known = self._known.get(self._key(name))
         # A module that is run again brings the same class anew.
         if known is not None and _path_of(known) != _path_of(thing):
@@ -177,7 +179,7 @@ def register(cls: C) -> C:
     fitting = [one for one in _REGISTRIES if isinstance(cls, type) and issubclass(cls, one.base)]
     if not fitting:
         bases = ", ".join(one.base.__name__ for one in _REGISTRIES)
-        raise GridPathError(f"{cls!r} cannot be registered, expected a class derived from one of {bases}")
+        raise GridPathError(f"{shown(cls)} cannot be registered, expected a class derived from one of {bases}")
     # The closest base: a planner is an algorithm as well.
     return min(fitting, key=lambda one: cls.__mro__.index(one.base)).register(cls)
 

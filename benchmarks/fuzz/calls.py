@@ -34,6 +34,7 @@ from pymoo_gridpath import (
     plotting,
     problems,
     progress,
+    quality,
     representations,
     study,
 )
@@ -45,7 +46,21 @@ from pymoo_gridpath.study.planning.expand import plan_study
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference.md"
 
 #: Kernels, which trust their callers; the reference does not list them.
-INTERNAL = ("pymoo_gridpath.search",)
+INTERNAL = ("pymoo_gridpath.search", "pymoo_gridpath.testing")
+
+# What extensions are made of. It is called with what the package hands over, and does not check that.
+BUILDING_BLOCKS = (
+    "Moves",
+    "Plan",
+    "ReferenceFront",
+    "Registry",
+    "SequencePaths",
+    "Sequences",
+    "check_paths",
+    "check_size",
+    "make_grid",
+    "reference_planner",
+)
 
 Call = tuple[Callable, dict[str, Any]]
 
@@ -61,14 +76,13 @@ class World:
         self.grid = OccupancyGrid(occupied, resolution=0.5, origin=(1.0, 2.0, 0.3), name="small")
         self.query: dict[str, Any] = {"start": (0, 0), "goal": (7, 5)}
         self.field = np.arange(48.0).reshape(6, 8) / 8
+        self.enter = np.arange(384.0).reshape(8, 6, 8) / 8
         self.random = np.random.default_rng(1)
 
     @cached_property
     def codings(self) -> dict[str, Any]:
-        return {
-            name: cast(Any, representations.REPRESENTATIONS[name])(self.grid, **self.query)
-            for name in representations.REPRESENTATIONS
-        }
+        known: Any = representations.REPRESENTATIONS
+        return {name: known[name](self.grid, **self.query) for name in known}
 
     @cached_property
     def frame(self) -> MonotoneFrame:
@@ -253,6 +267,19 @@ def _problems(w: World) -> dict[str, Call]:
         "random_dense_grid": (problems.random_dense_grid, {"size": 8, "p0": 0.3, "random_state": 1}),
         "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
         "Length": (objectives.Length, {}),
+        **{
+            f"{type(one).__name__}.{method}": (getattr(one, method), given)
+            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0))
+            for method, given in (
+                ("moves", {"grid": w.grid}),
+                ("prepare", {"representation": w.problem.representation, "grid": w.grid}),
+            )
+        },
+        "Objective.field": (objectives.Turn().field, {"grid": w.grid}),
+        "Objective.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
+        "Objective.moves": (objectives.Turn().moves, {"grid": w.grid}),
+        "Objective.prepare": (objectives.Turn().prepare, {"representation": w.problem.representation, "grid": w.grid}),
+        "register": (pymoo_gridpath.register, {"cls": objectives.Length}),
         "Length.field": (objectives.Length().field, {"grid": w.grid}),
         "Length.field_in": (objectives.Length().field_in, {"grid": w.grid, "box": w.grid.whole}),
         "Turn": (objectives.Turn, {}),
@@ -340,6 +367,8 @@ def _paths(w: World) -> dict[str, Call]:
         "CellPaths": (partial(_measured, CellPaths), {"grid": w.grid, "rows": cells.rows}),
         "CellPaths.cells": (cells.cells, {"index": 1}),
         "CellPaths.total": (cells.total, {"field": w.field.ravel()}),
+        "ColumnPaths.moves_total": (paths.moves_total, {"enter": w.enter}),
+        "CellPaths.moves_total": (cells.moves_total, {"enter": w.enter}),
     }
 
 
@@ -349,7 +378,14 @@ def _measured(cls, **arguments):
 
 
 def _search(w: World) -> dict[str, Call]:
+    front = np.array([[0.0, 4.0], [1.0, 1.0], [4.0, 0.0]])
     return {
+        "ExactFront.plan": (algorithms.ExactFront().plan, {"problem": w.problem}),
+        "ExactFront.parameters": (algorithms.ExactFront.parameters, {}),
+        "find_algorithm": (algorithms.find_algorithm, {"name": "nsga2"}),
+        "hypervolume_ratio": (quality.hypervolume_ratio, {"F": front + 0.5, "front": front}),
+        "igd_plus": (quality.igd_plus, {"F": front + 0.5, "front": front}),
+        "share_found": (quality.share_found, {"F": front, "front": front}),
         "Budget": (exact.Budget, {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False}),
         "exact_front": (exact.exact_front, {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0)}),
         "ExactResult": (
@@ -579,6 +615,7 @@ def _studies(w: World) -> dict[str, Call]:
     query = {"start": (0, 0), "goal": (7, 5)}
     return {
         "load_study": (study.load_study, {"path": w.toml}),
+        "compare": (study.compare, {"results": [("small", "NSGA2", w.result)], "name": "a", "target": 0.9, "times": False}),
         "Study": (study.Study, {**given, "name": "a", "target": 0.9, "folder": w.folder, "reference": own["reference"]}),
         "Study.error": (w.study.error, {"message": "wrong", "where": ("problems", 0)}),
         "Study.from_dict": (study.Study.from_dict, {"data": w.study.to_dict()}),
@@ -686,6 +723,8 @@ def public_names() -> set[str]:
     """Return all public functions, classes that can be made, and methods of these, as the keys of `calls`."""
     names: set[str] = set()
     for module, name in documented():
+        if module.startswith(INTERNAL) or name in BUILDING_BLOCKS:
+            continue
         thing = getattr(importlib.import_module(module), name)
         if not inspect.isclass(thing):
             names |= {name} if callable(thing) else set()

@@ -59,7 +59,7 @@ def read_text_bytes(path: str | os.PathLike[str], limit: int | None = None) -> b
 
 def read_string(path: str | os.PathLike[str], limit: int) -> str:
     """Return the text of a UTF-8 file of at most ``limit`` bytes, line ends as newlines, or raise MapError."""
-    return decode(path, read_text_bytes(path, limit))
+    return decode(path, read_text_bytes(path, checks.whole("limit", limit, 0)))
 
 
 def decode(path: str | os.PathLike[str], data: bytes, line: int = 1) -> str:

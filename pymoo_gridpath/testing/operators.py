@@ -19,6 +19,7 @@ from pymoo.core.sampling import Sampling
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators.mating import mates_on_arrays
 from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.testing.global_state import global_state
 
 N = 12
 
@@ -52,7 +53,8 @@ class OperatorSuite:
         rng: Any = np.random.default_rng(seed)
         pop: Any = Population.new("X", X)
         if isinstance(operator, Sampling):
-            return operator(problem, N, random_state=rng).get("X")
+            drawn: Any = operator(problem, N, random_state=rng)
+            return drawn.get("X")
         if isinstance(operator, Crossover):
             pairs = np.arange(N).reshape(-1, operator.n_parents)
             crossed: Any = operator(problem, pop, pairs, random_state=rng)
@@ -98,10 +100,9 @@ class OperatorSuite:
 
     def test_nothing_is_drawn_from_numpys_global_generator(self):
         problem = self.problem()
-        before = _global_state()
+        before = global_state()
         self.apply(self.make(), problem, self.parents(problem), 1)
-        after = _global_state()
-        assert np.array_equal(after[0], before[0]) and after[1] == before[1]
+        assert global_state() == before
 
     def test_the_array_hook_says_all_where_it_is_said_to(self):
         operator: Any = self.make()
@@ -125,9 +126,3 @@ class OperatorSuite:
 
 def _digest(X: np.ndarray) -> str:
     return hashlib.sha256(np.ascontiguousarray(X, dtype=np.int64).tobytes()).hexdigest()
-
-
-def _global_state() -> tuple[np.ndarray, int]:
-    """Return the state of numpy's global generator, which nothing may draw from."""
-    state: Any = np.random.get_state(legacy=True)  # noqa: NPY002
-    return state[1].copy(), state[2]

@@ -126,9 +126,8 @@ class Store:
         GridPathError
             If the keys are no texts, a folder or a file cannot be read, or what is damaged cannot be moved.
         """
-        if isinstance(keys, str) or not isinstance(keys, Iterable):
-            raise GridPathError(f"keys is {checks.shown(keys)}, expected keys of runs")
-        keys = [checks.text("a key", key) for key in keys]
+        # An iterator has no length, which is what tells lists from what only looks like one.
+        keys = checks.names("keys", list(keys) if isinstance(keys, Iterator) else keys)
         found = StoredRuns()
         with readable(self.folder):
             odd = list(self._odd())
@@ -136,7 +135,7 @@ class Store:
             found.odd.append(self._set_aside(path) if set_aside else path)
         with readable(self.folder):
             present = self._present()
-        for key in checks.names("keys", list(keys) if isinstance(keys, Iterator) else keys):
+        for key in keys:
             if key not in present:
                 found.missing.append(key)
                 continue
