@@ -63,7 +63,7 @@ class Registry(Generic[T]):
         self._entry_points: dict[str, EntryPoint] | None = None
         _REGISTRIES.append(self)
 
-    def register(self, thing: T, name: str | None = None) -> T:
+    def register(self, thing: C, name: str | None = None) -> C:
         """Make a class known and return it, so that this serves as a decorator.
 
         Parameters
@@ -91,7 +91,8 @@ class Registry(Generic[T]):
         # A module that is run again brings the same class anew.
         if known is not None and _path_of(known) != _path_of(thing):
             raise GridPathError(f"the {self.kind} {name!r} is {_path_of(known)} already; give {_path_of(thing)} another name")
-        self._known[self._key(name)], self._names[self._key(name)] = thing, name
+        known_as: Any = thing
+        self._known[self._key(name)], self._names[self._key(name)] = known_as, name
         return thing
 
     def __getitem__(self, name: str) -> T:

@@ -206,7 +206,7 @@ def _named(value: Any, kind: Kind, where: Where) -> tuple[type, str]:
     if cls.__module__.startswith(_PACKAGE):
         for name in kind.known:
             if name in (cls.__name__, getattr(cls, "name", None)) and kind.known[name] is cls:
-                return cls, name
+                return cls, str(name)
     path = f"{cls.__module__}:{cls.__qualname__}"
     if cls.__module__ == "__main__" or not PATH.fullmatch(path):
         raise StudyError(

@@ -109,7 +109,7 @@ ALGORITHM = ("algorithms", 1, "spec")
         (("more",), 1, "the plan has no key 'more'"),
         (("budget",), {"generations": "9"}, "budget.generations: generations is '9', expected a whole number"),
         (("target",), 1.5, "target: target is 1.5, expected a number, above 0, at most 1"),
-        (("reference",), {"algorithm": "NSGA2"}, "reference.algorithm: algorithm is 'NSGA2', expected exact"),
+        (("reference",), {"algorithm": "NSGA2"}, "reference.algorithm: algorithm is 'NSGA2', expected a planner"),
         (("reference",), {"algorithm": "exact", "max_seconds": "x"}, "max_seconds is 'x', expected a number"),
         (("problems",), {}, "problems: problems is {}, expected a list"),
         (("problems", 0), 5, "problems[0]: problems is 5, expected a table"),
