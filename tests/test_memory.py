@@ -60,7 +60,7 @@ def test_whatever_shows_it_is_a_sentence_and_status_2(error, command, monkeypatc
     def fail(*arguments, **options):
         raise error
 
-    monkeypatch.setattr(cli, "load_map", fail)
+    monkeypatch.setattr("pymoo_gridpath.maps.load_map", fail)
     monkeypatch.chdir(tmp_path)
     assert cli.main(command) == 2
     said = capsys.readouterr().err

@@ -87,7 +87,7 @@ def test_an_sdist_holds_what_a_checkout_holds_and_runs(source, tmp_path):
         files = [(member.name.partition("/")[2], archive.extractfile(member)) for member in archive if not member.isdir()]
         held = {name: file.read() for name, file in files if file is not None}
     wanted = checkout()
-    assert {"Makefile", ".ci/run", "docs/conf.py", "benchmarks/table1.py", "tests/reference.py"} <= set(wanted)
+    assert {"Makefile", ".ci/run", "docs/conf.py", "benchmarks/table1.py", "tests/exact_fronts.py"} <= set(wanted)
     assert {"problems/__init__.py", "operators/__init__.py"} <= set(wanted)
     assert [name for name in wanted if held.get(name) != (ROOT / name).read_bytes()] == []
     plan_runs_from(sdist, tmp_path)

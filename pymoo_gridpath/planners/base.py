@@ -83,7 +83,7 @@ class Planner(Algorithm, ABC):
     >>> problem = GridPathProblem(OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 0, 0]]), (0, 0), (2, 0))
     >>> result = minimize(problem, Straight())
     >>> result.F.round(2).tolist(), result.message
-    ([[2.0, 0.37]], 'went straight on')
+    ([[2.0, 0.64]], 'went straight on')
     """
 
     deterministic: ClassVar[bool] = True

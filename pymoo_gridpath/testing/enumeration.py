@@ -41,12 +41,13 @@ def turn_between(before: int | None, after: int) -> int:
 def enumerate_paths(grid: OccupancyGrid, start: Cell, goal: Cell, headings: Iterable[int] = range(8)) -> list[EnumeratedPath]:
     """Return every legal path without a loop. Grids of more than 14 free cells take long."""
     found, headings = [], list(headings)
+    steps = {(x, y): list(legal_steps(grid, (x, y), headings)) for y, x in np.ndindex(grid.shape) if grid.is_free((x, y))}
 
     def walk(cells, straight, diagonal, turn, heading):
         if cells[-1] == goal:
             found.append(EnumeratedPath(tuple(cells), straight, diagonal, turn))
             return
-        for m, after in legal_steps(grid, cells[-1], headings):
+        for m, after in steps[cells[-1]]:
             if after not in cells:
                 walk([*cells, after], straight + 1 - m % 2, diagonal + m % 2, turn + turn_between(heading, m), m)
 

@@ -19,6 +19,7 @@ from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.testing.enumeration import STEPS, enumerate_paths, legal_steps, turn_between
 
 N_GRIDS = 500
+HEADING = {step: m for m, step in enumerate(STEPS)}
 
 
 class Ways(Objective):
@@ -39,7 +40,7 @@ class Ways(Objective):
         total = 0.0
         if self.costs is not None:
             total += sum(self.costs[y, x] for x, y in cells)
-        headings = [STEPS.index((b[0] - a[0], b[1] - a[1])) for a, b in itertools.pairwise(cells)]
+        headings = [HEADING[b[0] - a[0], b[1] - a[1]] for a, b in itertools.pairwise(cells)]
         for m, (x, y) in zip(headings, cells[1:], strict=True):
             if isinstance(self.steps, tuple):
                 total += self.steps[m % 2]

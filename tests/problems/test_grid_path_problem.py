@@ -208,7 +208,10 @@ def test_rows_longer_than_a_part_are_evaluated(monkeypatch):
         ({"objectives": (3,)}, "neither a name nor an Objective"),
         ({"objectives": None}, "objectives is None, expected names such as 'length', or Objective objects"),
         ({"representation": "real"}, "no representation 'real'"),
-        ({"representation": 3}, "representation is 3, expected a name such as 'integer', or a Representation"),
+        (
+            {"representation": 3},
+            "representation is 3, expected a name such as 'integer', a class derived from Representation, or an object of one",
+        ),
         (
             {"representation": np.zeros(2)},
             r"representation is an array of float64 of shape \(2,\), expected a name such as 'integer'",

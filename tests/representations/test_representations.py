@@ -37,7 +37,7 @@ def test_measures_equal_those_of_the_cells(query, name):
     coding = make_representation(name, grid, start, goal, axis)
     paths = coding.decode(random_genes(coding, rng))
     objective = Vulnerability()
-    vulnerability = objective(paths, coding.prepare(objective.field(grid)))
+    vulnerability = objective(paths, objective.prepare(coding, grid))
     for i in range(len(paths)):
         cells = paths.cells(i).tolist()
         assert paths.length[i] == pytest.approx(reference.length(cells), abs=1e-9)
