@@ -39,18 +39,19 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
 class MapFormatSuite:
     """Tests that every `MapFormat` must pass; inherit from it, and set `format` and `write`.
 
-    Attributes
-    ----------
-    format : type of MapFormat
+        Attributes
+        ----------
+        format : type of MapFormat
 
-    Examples
-    --------
-    >>> from pymoo_gridpath.maps.text import TextFormat
-    >>> class TestText(MapFormatSuite):
-    ...     format = TextFormat
-    ...
-    ...     def write(self, path, grid):
-    ...         path.write_text("\\n".join("".join(".#"[cell] for cell in row) for row in grid.occupied[::-1].astype(int)))
+        Examples
+        --------
+        >>> from pymoo_gridpath.maps.text import TextFormat
+    from pymoo_gridpath.testing.global_state import global_state
+        >>> class TestText(MapFormatSuite):
+        ...     format = TextFormat
+        ...
+        ...     def write(self, path, grid):
+        ...         path.write_text("\\n".join("".join(".#"[cell] for cell in row) for row in grid.occupied[::-1].astype(int)))
     """
 
     format: type[MapFormat]
@@ -174,14 +175,14 @@ class MapFormatSuite:
     def test_reading_changes_nothing(self, tmp_path):
         path = self._made(tmp_path, _grids()[-1])
         before = {file: file.read_bytes() for file in tmp_path.iterdir()}
-        folder, state = os.getcwd(), np.random.get_state()[1].copy()  # pyright: ignore  # noqa: NPY002
+        folder, state = os.getcwd(), global_state()
         first = self.format().read(path)
         kept = first.occupied.copy()
         assert self.format().read(path) == first
         self.format().query(path)
         assert {file: file.read_bytes() for file in tmp_path.iterdir()} == before
         assert os.getcwd() == folder
-        assert np.array_equal(np.random.get_state()[1], state)  # pyright: ignore  # noqa: NPY002
+        assert global_state() == state
         # The grid is no view of the file.
         path.write_bytes(bytes(len(before[path])))
         assert np.array_equal(first.occupied, kept)
