@@ -12,6 +12,7 @@ import pytest
 from pymoo_gridpath.errors import GridPathError, MapError, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import MAP_FORMATS, MapFormat, Query, _files, format_of, load_map, query_of
+from pymoo_gridpath.testing.global_state import global_state
 
 # Heights and widths: no map looks like its mirror image or its transpose.
 SHAPES = ((1, 1), (1, 7), (6, 1), (5, 9), (12, 4))
@@ -39,19 +40,18 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
 class MapFormatSuite:
     """Tests that every `MapFormat` must pass; inherit from it, and set `format` and `write`.
 
-        Attributes
-        ----------
-        format : type of MapFormat
+    Attributes
+    ----------
+    format : type of MapFormat
 
-        Examples
-        --------
-        >>> from pymoo_gridpath.maps.text import TextFormat
-    from pymoo_gridpath.testing.global_state import global_state
-        >>> class TestText(MapFormatSuite):
-        ...     format = TextFormat
-        ...
-        ...     def write(self, path, grid):
-        ...         path.write_text("\\n".join("".join(".#"[cell] for cell in row) for row in grid.occupied[::-1].astype(int)))
+    Examples
+    --------
+    >>> from pymoo_gridpath.maps.text import TextFormat
+    >>> class TestText(MapFormatSuite):
+    ...     format = TextFormat
+    ...
+    ...     def write(self, path, grid):
+    ...         path.write_text("\\n".join("".join(".#"[cell] for cell in row) for row in grid.occupied[::-1].astype(int)))
     """
 
     format: type[MapFormat]
