@@ -194,7 +194,7 @@ def test_truncation_by_distances_alone_matches_a_loop(seed):
 def test_whole_runs_are_pymoos(stock, selection, survival, n_obj, obstacles, make_problem):
     problem = make_problem(n_obj, obstacles)
     # All of pymoo's SPEA2 share one survival by default, which remembers what other runs have seen.
-    own = {"survival": SPEA2Survival()} if stock is SPEA2 else {}
+    own = {"survival": SPEA2Survival(normalize=True)} if stock is SPEA2 else {}
     first = minimize(problem, stock(pop_size=30, **own, **paper_operators(problem)), ("n_gen", 15), seed=3)
     fast = stock(
         pop_size=30, selection=selection(), survival=survival(), evaluator=ArrayEvaluator(), **paper_operators(problem)
