@@ -186,13 +186,15 @@ class OccupancyGrid:
 
         Unknown cells are forgotten if ``occupied`` has another shape.
         """
+        if "occupied" in changes:
+            changes["occupied"] = _as_cells("occupied", changes["occupied"])
         arguments = {
             "occupied": self._occupied,
             "resolution": self._resolution,
             "origin": self._origin,
             "corner_cutting": self._corner_cutting,
             "name": self._name,
-            "unknown": self._unknown if np.shape(changes.get("occupied", self._occupied)) == self.shape else None,
+            "unknown": self._unknown if changes.get("occupied", self._occupied).shape == self.shape else None,
         }
         unknown = set(changes) - set(arguments)
         if unknown:
