@@ -16,6 +16,7 @@ from pymoo_gridpath.planners import reference_planner
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_representation
 from pymoo_gridpath.study.planning.plan import (
+    MAX_RUNS,
     Plan,
     PlannedAlgorithm,
     PlannedProblem,
@@ -31,9 +32,6 @@ from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.kinds import algorithm_entry, is_monotone, representation_entry
 from pymoo_gridpath.study.specification.operators import operator_entry, own_budget, planner_of
 from pymoo_gridpath.study.specification.study import Study
-
-#: Runs that a study may have.
-MAX_RUNS = 1_000_000
 
 # Work, in cells, that checking the queries of a group for a path that advances column by column may take: about two seconds.
 _CHECKED_CELLS = 8_000_000

@@ -16,6 +16,9 @@ from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name
 from pymoo_gridpath.study.specification.operators import planner_of
 
+#: Runs that a study may have.
+MAX_RUNS = 1_000_000
+
 #: Part of every key. Whoever changes what the canonical dictionaries mean raises it, so that old results do not pass for new.
 SCHEMA = 2
 

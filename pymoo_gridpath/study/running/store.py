@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import itertools
 import json
 import os
 import re
@@ -16,7 +17,7 @@ from typing import Any
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.files import UNFINISHED, make_folder, replace_file
-from pymoo_gridpath.study.planning.plan import Plan
+from pymoo_gridpath.study.planning.plan import MAX_RUNS, Plan
 from pymoo_gridpath.study.running.lock import locked
 from pymoo_gridpath.study.running.record import DamagedRecordError, RunRecord, from_bytes, read_meta
 
@@ -127,7 +128,11 @@ class Store:
             If the keys are no texts, a folder or a file cannot be read, or what is damaged cannot be moved.
         """
         # An iterator has no length, which is what tells lists from what only looks like one.
-        keys = checks.names("keys", list(keys) if isinstance(keys, Iterator) else keys)
+        if isinstance(keys, Iterator):
+            keys = list(itertools.islice(keys, MAX_RUNS + 1))
+            if len(keys) > MAX_RUNS:
+                raise GridPathError(f"keys has no end, expected at most {MAX_RUNS:,}")
+        keys = checks.names("keys", keys)
         found = StoredRuns()
         with readable(self.folder):
             odd = list(self._odd())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import functools
+import itertools
 import json
 import os
 import subprocess
@@ -243,3 +244,8 @@ def test_a_folder_that_cannot_be_made(tmp_path):
         Store(tmp_path / "file/study").lock(),
     ):
         pass
+
+
+def test_keys_without_an_end_are_refused(tmp_path):
+    with pytest.raises(GridPathError, match="keys has no end, expected at most 1,000,000"):
+        Store(tmp_path / "study").check(itertools.repeat("a"))
