@@ -209,9 +209,9 @@ def same(one: Any, other: Any, depth: int = 4) -> bool:
 
 
 def _planted() -> dict[str, Callable[[], contextlib.AbstractContextManager]]:
-    from pymoo_gridpath import checks, decision, errors, problems
+    from pymoo_gridpath import checks, decision, problems
     from pymoo_gridpath.grid import OccupancyGrid
-    from pymoo_gridpath.representations import base, cell_sequence
+    from pymoo_gridpath.representations import base
 
     genes, check_field = base.Representation.genes, base.check_field
 
@@ -238,9 +238,9 @@ def _planted() -> dict[str, Callable[[], contextlib.AbstractContextManager]]:
         "whole numbers are not looked at": lambda: mock.patch.object(checks, "whole", lambda name, value, *_, **__: int(value)),
         "arrays are not looked at": lambda: mock.patch.object(checks, "array", lambda name, value, *_, **__: np.asarray(value)),
         "values are shown whole": lambda: mock.patch.object(checks._Brief, "repr_instance", lambda self, x, level: repr(x)),
-        "control characters are shown raw": lambda: mock.patch.object(errors, "visible", str),
+        "control characters are shown raw": lambda: mock.patch.object(checks, "visible", str),
         "genes are read in the order of memory": lambda: mock.patch.object(base.Representation, "genes", loses_order),
-        "a field is changed in place": lambda: mock.patch.object(cell_sequence, "check_field", writes_back),
+        "a field is changed in place": lambda: mock.patch.object(base, "check_field", writes_back),
         "the knee takes for ever": lambda: mock.patch.object(decision, "knee_point", endless),
         "a random grid takes gigabytes": lambda: mock.patch.object(problems, "random_dense_grid", wasteful),
         "cells are taken as they come": lambda: mock.patch.object(OccupancyGrid, "contains", lambda self, cell: cell[0] >= 0),
