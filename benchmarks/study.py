@@ -36,7 +36,8 @@ from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan
 from pymoo_gridpath.study.report import write_report
 from pymoo_gridpath.study.running.execute import Recorder, execute
-from pymoo_gridpath.study.running.executors import LocalProcesses, dask_executor
+from pymoo_gridpath.study.running.executors import dask_executor
+from pymoo_gridpath.study.running.processes import LocalProcesses
 from pymoo_gridpath.study.running.record import from_bytes, to_bytes
 from pymoo_gridpath.study.running.runner import run_study
 from pymoo_gridpath.study.running.store import Store
@@ -191,7 +192,7 @@ def kills(folder: Path) -> None:
 
 _COORDINATOR = """
 import pickle, sys
-from pymoo_gridpath.study.running.executors import LocalProcesses
+from pymoo_gridpath.study.running.processes import LocalProcesses
 from pymoo_gridpath.study.running.runner import run_study
 if __name__ == "__main__":
     with open(sys.argv[1], "rb") as file:

@@ -24,7 +24,7 @@ FOUND = ("status", "complete", "n_eval", "n_gen", "n_legal", "n_members", "objec
 
 _COORDINATOR = """
 import pickle, signal, sys
-from pymoo_gridpath.study.running.executors import LocalProcesses
+from pymoo_gridpath.study.running.processes import LocalProcesses
 from pymoo_gridpath.study.running.runner import run_study
 
 if __name__ == "__main__":

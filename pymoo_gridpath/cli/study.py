@@ -99,7 +99,8 @@ def _check(arguments) -> int:
 def _run(arguments) -> int:
     """Run what is not stored yet of a study; what was stored by an earlier run, even if it was killed, is kept."""
     from pymoo_gridpath.study.planning.expand import plan_study
-    from pymoo_gridpath.study.running.executors import LocalProcesses, dask_executor
+    from pymoo_gridpath.study.running.executors import dask_executor
+    from pymoo_gridpath.study.running.processes import LocalProcesses
     from pymoo_gridpath.study.running.runner import run_study
     from pymoo_gridpath.study.specification.toml_file import load_study
 

@@ -6,7 +6,7 @@ from importlib import import_module
 _HOMES = {
     "AlgorithmSpec": "specification.algorithm",
     "History": "running.record",
-    "LocalProcesses": "running.executors",
+    "LocalProcesses": "running.processes",
     "Outcome": "running.runner",
     "ProblemSpec": "specification.problem",
     "QueryRange": "specification.problem",

@@ -7,6 +7,10 @@ from concurrent.futures import Executor
 from pymoo_gridpath.errors import GridPathError
 
 
+class WorkerLost(RuntimeError):
+    """What a future raises whose worker ended without an answer; what others do goes on."""
+
+
 class StudyExecutor(Executor):
     """An executor that a study can ask how it is.
 

@@ -14,7 +14,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun
 from pymoo_gridpath.study.running.execute import execute, failed_run
-from pymoo_gridpath.study.running.executor import describe
+from pymoo_gridpath.study.running.executor import WorkerLost, describe
 from pymoo_gridpath.study.running.executors import study_executor
 from pymoo_gridpath.study.running.progress import StudyProgress
 from pymoo_gridpath.study.running.record import read_meta
@@ -153,7 +153,7 @@ class _Coordinator:
         self._plan, self._store = plan, store
         self._executor = study_executor(executor)
         self._waiting = deque(runs)
-        # Runs that were under way whenever a worker died: each is tried without others beside it, to see which one it is.
+        # Runs whose workers died: each is tried once more without others beside it, which may have taken the memory.
         self._suspects: deque[PlannedRun] = deque()
         self._in_flight: dict[Future, PlannedRun] = {}
         self._attempts: Counter[str] = Counter()
@@ -167,9 +167,7 @@ class _Coordinator:
                     self._submit()
                     done, _ = wait(self._in_flight, _INTERVAL, FIRST_COMPLETED)
                     for future in done:
-                        # It may have been dealt with together with another.
-                        if future in self._in_flight:
-                            self._take(future)
+                        self._take(future)
                     self._executor.check()
                     self._progress.show()
         except KeyboardInterrupt:
@@ -214,28 +212,21 @@ class _Coordinator:
             error = self._store_result(future)
         if error is None:
             return
-        lost = [future]
-        if isinstance(error, BrokenExecutor):
-            # The others were lost with it, or have just finished.
-            wait(self._in_flight, timeout=10)
-            self._keep_finished()
-            lost = list(self._in_flight)
-        runs = [self._in_flight.pop(future) for future in lost]
+        run = self._in_flight.pop(future)
         if isinstance(error, self._executor.hopeless):
-            self._give_up(runs[0], f"the workers that carried it out were lost: {describe(error)}")
+            self._give_up(run, f"the workers that carried it out were lost: {describe(error)}")
             return
         self._executor.recover(error)
-        for run in runs:
-            self._again(run, error)
+        self._again(run, error)
 
     def _again(self, run: PlannedRun, error: BaseException) -> None:
         self._attempts[run.key] += 1
-        broken = isinstance(error, BrokenExecutor)
+        lost = isinstance(error, WorkerLost)
         if self._attempts[run.key] < MAX_ATTEMPTS - 1:
             self._waiting.appendleft(run)
         elif self._attempts[run.key] < MAX_ATTEMPTS:
-            (self._suspects if broken else self._waiting).appendleft(run)
-        elif broken:
+            (self._suspects if lost else self._waiting).appendleft(run)
+        elif lost:
             self._give_up(
                 run,
                 f"the process that carried it out ended without an answer {MAX_ATTEMPTS} times, the last time with no other "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import signal
 import socket
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import threading
 import time
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import loky
@@ -20,7 +22,10 @@ import pytest
 from small_studies import make_plan, same_runs, stored, wait_until, with_bomb
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study.running.executors import LocalProcesses, dask_executor
+from pymoo_gridpath.study.running import processes
+from pymoo_gridpath.study.running.executor import WorkerLost
+from pymoo_gridpath.study.running.executors import dask_executor
+from pymoo_gridpath.study.running.processes import LocalProcesses
 from pymoo_gridpath.study.running.runner import run_study
 from pymoo_gridpath.study.running.store import Store
 
@@ -83,7 +88,7 @@ def test_processes_use_one_thread_and_leave_the_environment_as_it_was(monkeypatc
 def test_no_process_is_started_for_nothing(plan, done):
     with LocalProcesses(2) as executor:
         run_study(plan, done.folder, executor)
-        assert executor._pool is None
+        assert executor._crew is None
 
 
 @pytest.mark.parametrize("number", [0, -1])
@@ -141,46 +146,133 @@ def test_a_foreign_pool_that_breaks_ends_the_study_with_a_sentence(plan, done, t
 
 def test_a_script_without_a_guard_is_told_about_it(tmp_path, plan):
     script = tmp_path / "script.py"
-    script.write_text("from pymoo_gridpath.study.running.executors import LocalProcesses\nLocalProcesses(1).submit(print)\n")
+    script.write_text("from pymoo_gridpath.study.running.processes import LocalProcesses\nLocalProcesses(1).submit(print)\n")
     answer = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60)
     assert "ended as soon as they were started; a script that runs a study in processes needs if __name__" in answer.stderr
 
 
-class KilledAtOnce(LocalProcesses):
-    """Processes the first of which are killed while they start, as when memory runs out, so many times."""
-
-    def __init__(self, n_processes: int, times: int):
-        super().__init__(n_processes)
-        self.times = times
-
-    def _start(self):
-        self.times -= 1
-        if self.times < 0:
-            return super()._start()
-        threading.Thread(target=self._kill, args=(psutil.Process().children(),)).start()
-        return super()._start()
-
-    def _kill(self, before):
-        wait_until(lambda: set(psutil.Process().children()) - set(before))
-        for child in set(psutil.Process().children()) - set(before):
-            # That of Python that watches over shared things is none of them.
-            if "resource_tracker" not in " ".join(child.cmdline()):
-                child.kill()
+def test_processes_that_nobody_ends_end_with_the_script(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from pymoo_gridpath.study.running.processes import LocalProcesses\n"
+        "if __name__ == '__main__':\n"
+        "    print(LocalProcesses(2).submit(int, '3').result())\n"
+    )
+    answer = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60)
+    assert (answer.returncode, answer.stdout, answer.stderr) == (0, "3\n", "")
 
 
-def test_workers_that_are_killed_while_they_start_are_started_again(plan, done, tmp_path):
-    with KilledAtOnce(2, times=2) as executor:
+@pytest.fixture
+def killed_at_once(monkeypatch):
+    """Have the first processes killed while they start, as when memory runs out: so many of them."""
+
+    def kill(times: int, when: str = "started") -> list[int]:
+        left = [times]
+        begin = processes._begin
+
+        def begin_and_kill():
+            worker = begin()
+            left[0] -= 1
+            if left[0] >= 0 and worker is not None:
+                worker.process.kill()
+            return worker
+
+        def kill_and_start(process):
+            # Once it lives, before it was handed what it needs.
+            left[0] -= 1
+            if left[0] < 0:
+                return start(process)
+            raise BrokenPipeError
+
+        start = processes._Worker._start
+        if when == "started":
+            monkeypatch.setattr(processes, "_begin", begin_and_kill)
+        else:
+            monkeypatch.setattr(processes._Worker, "_start", kill_and_start)
+        return left
+
+    return kill
+
+
+@pytest.mark.parametrize("when", ["started", "handed what they need"])
+def test_workers_that_are_killed_while_they_start_are_started_again(plan, done, tmp_path, killed_at_once, when):
+    left = killed_at_once(2, when)
+    with LocalProcesses(2) as executor:
         outcome = run_study(plan, tmp_path, executor)
     assert (outcome.n_run, outcome.n_failed, outcome.messages) == (len(plan.runs), 0, [])
-    assert executor.times < 0
+    assert left[0] < 0
     same_runs(plan, done, Store(tmp_path))
 
 
-def test_workers_that_are_killed_again_and_again_are_no_matter_of_a_guard(tmp_path, plan):
-    with KilledAtOnce(2, times=9) as executor, pytest.raises(GridPathError) as raised:
+def test_workers_that_are_killed_again_and_again_are_no_matter_of_a_guard(tmp_path, plan, killed_at_once):
+    killed_at_once(9)
+    with LocalProcesses(2) as executor, pytest.raises(GridPathError) as raised:
         run_study(plan, tmp_path, executor)
     assert re.search(r"as soon as they were started, 3 times \(by .*signal 9.*\), as when memory runs out", str(raised.value))
     assert "__main__" not in str(raised.value)
+
+
+def test_a_worker_that_is_killed_while_it_answers_loses_its_own_task_alone():
+    """Pools that have one queue of results for all wait for ever here."""
+    with LocalProcesses(2) as executor:
+        first, second = executor.submit(die_while_answering), executor.submit(str, 7)
+        with pytest.raises(WorkerLost, match="ended by signal 9"):
+            first.result(timeout=60)
+        assert second.result(timeout=60) == "7"
+        assert {executor.submit(str, number).result(timeout=60) for number in range(4)} == set("0123")
+
+
+def die_while_answering():
+    def send_half(pipe, data):
+        os.write(pipe.fileno(), bytes(data)[: len(data) // 2])
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    Connection._send = send_half
+    return bytes(10**6)
+
+
+def test_what_a_task_raises_arrives_with_where_it_was_raised():
+    with LocalProcesses(1) as executor:
+        with pytest.raises(ValueError, match="invalid literal") as raised:
+            executor.submit(int, "x").result(timeout=60)
+        assert "in a local process" in raised.value.__notes__[0]
+        with pytest.raises(RuntimeError, match="Unpicklable: only here"):
+            executor.submit(raise_unpicklable).result(timeout=60)
+        with pytest.raises(Exception, match="pickle"):
+            executor.submit(lambda: 1).result(timeout=60)
+        with pytest.raises(Exception, match="pickle"):
+            executor.submit(return_unpicklable).result(timeout=60)
+        assert executor.submit(int, "3").result(timeout=60) == 3
+
+
+class Unpicklable(Exception):
+    def __init__(self, text, needed):
+        super().__init__(text)
+
+
+def raise_unpicklable():
+    raise Unpicklable("only here", 1)
+
+
+def return_unpicklable():
+    return lambda: 1
+
+
+def test_what_is_under_way_is_finished_or_given_up():
+    with LocalProcesses(1) as executor:
+        futures = [executor.submit(time.sleep, 0.1) for _ in range(3)]
+    assert all(future.done() and not future.cancelled() for future in futures)
+    executor = LocalProcesses(1)
+    futures = [executor.submit(time.sleep, 60) for _ in range(3)]
+    wait_until(futures[0].running)
+    begin = time.monotonic()
+    executor.abort()
+    with pytest.raises(WorkerLost):
+        futures[0].result(timeout=30)
+    assert all(future.cancelled() for future in futures[1:])
+    assert time.monotonic() - begin < 30
+    with executor:
+        assert executor.submit(int, "3").result(timeout=60) == 3, "it can be used again"
 
 
 # -- Dask ---------------------------------------------------------------------------------------------------------------
