@@ -213,7 +213,7 @@ def _planted() -> dict[str, Callable[[], contextlib.AbstractContextManager]]:
     from pymoo_gridpath.grid import OccupancyGrid
     from pymoo_gridpath.representations import base
 
-    genes, check_field = base.Representation.genes, base.check_field
+    genes, check_field, shown = base.Representation.genes, base.check_field, checks.shown
 
     def loses_order(self, X):
         X = np.asarray(X)
@@ -224,6 +224,9 @@ def _planted() -> dict[str, Callable[[], contextlib.AbstractContextManager]]:
         if found.flags.writeable and found.dtype.kind == "f":
             found *= 0.5
         return found
+
+    def shows_raw(value):
+        return value[:100] if isinstance(value, str) else shown(value)
 
     def endless(F):
         while time.process_time() < began + 60:
@@ -238,7 +241,7 @@ def _planted() -> dict[str, Callable[[], contextlib.AbstractContextManager]]:
         "whole numbers are not looked at": lambda: mock.patch.object(checks, "whole", lambda name, value, *_, **__: int(value)),
         "arrays are not looked at": lambda: mock.patch.object(checks, "array", lambda name, value, *_, **__: np.asarray(value)),
         "values are shown whole": lambda: mock.patch.object(checks._Brief, "repr_instance", lambda self, x, level: repr(x)),
-        "control characters are shown raw": lambda: mock.patch.object(checks, "visible", str),
+        "control characters are shown raw": lambda: mock.patch.object(checks, "shown", shows_raw),
         "genes are read in the order of memory": lambda: mock.patch.object(base.Representation, "genes", loses_order),
         "a field is changed in place": lambda: mock.patch.object(base, "check_field", writes_back),
         "the knee takes for ever": lambda: mock.patch.object(decision, "knee_point", endless),
