@@ -1,10 +1,16 @@
 """What several tests of exact fronts need."""
 
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from itertools import chain
+
 import numpy as np
 
 from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.objectives import Objective
-from pymoo_gridpath.testing.enumeration import non_dominated
+from pymoo_gridpath.testing.enumeration import STEPS, EnumeratedPath, enumerate_paths, non_dominated
 
 
 def random_grid(size, seed, density=0.2):
@@ -24,9 +30,58 @@ class Cost(Objective):
         return self.values
 
 
+class Along:
+    """Sums along many enumerated paths at once, in the order of their cells."""
+
+    def __init__(self, paths: list[EnumeratedPath]):
+        self.n_cells = np.array([len(path.cells) for path in paths])
+        self.length = np.array([path.straight + math.sqrt(2) * path.diagonal for path in paths])
+        self.turn = np.array([45.0 * path.turn for path in paths])
+        flat = np.fromiter(chain.from_iterable(chain.from_iterable(path.cells for path in paths)), dtype=np.int64)
+        self._x, self._y = flat.reshape(-1, 2).T
+        self._path = np.repeat(np.arange(len(paths)), self.n_cells)
+        # The cells that a step leads to.
+        self._after = np.flatnonzero(np.diff(self._path, prepend=-1) == 0)
+        steps = np.column_stack([np.diff(self._x), np.diff(self._y)])[self._after - 1]
+        heading = np.full((3, 3), -1)
+        for m, (dx, dy) in enumerate(STEPS):
+            heading[dx, dy] = m
+        self._heading = heading[steps[:, 0], steps[:, 1]]
+
+    def cells(self, field) -> np.ndarray:
+        """The sum of a field over the cells of each path, shape (n_paths,)."""
+        return np.bincount(self._path, field[self._y, self._x], len(self.n_cells))
+
+    def moves(self, costs) -> np.ndarray:
+        """The sum of the costs of the moves of each path: a straight and a diagonal one, or one a heading and cell entered."""
+        if isinstance(costs, tuple):
+            each = np.where(self._heading % 2 == 0, *costs)
+        else:
+            each = costs[self._heading, self._y[self._after], self._x[self._after]]
+        return np.bincount(self._path[self._after], each, len(self.n_cells))
+
+
+@lru_cache(maxsize=64)
+def queries_of(part: int, n_parts: int, count: int):
+    """Return solvable random queries: seed, grid, start, goal, all paths between them, and sums along these.
+
+    Parts have none in common.
+    """
+    found, seed = [], part
+    while len(found) < count:
+        case = random_case(seed)
+        if case is not None:
+            grid, start, goal, _ = case
+            paths = enumerate_paths(grid, tuple(start), tuple(goal), range(8))
+            if paths:
+                found.append((seed, grid, start, goal, paths, Along(paths)))
+        seed += n_parts
+    return found
+
+
 def front_of(measures, names):
     """Return the non-dominated rows of measures by name, each once and in ascending order."""
-    return non_dominated(zip(*(measures[name] for name in names), strict=True))
+    return non_dominated(zip(*(np.asarray(measures[name]).tolist() for name in names), strict=True))
 
 
 def random_case(seed):

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from exact_fronts import Cost, front_of, random_case
+from exact_fronts import Along, Cost, front_of, random_case
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.errors import GridPathError
@@ -44,14 +44,9 @@ def objectives_of(grid, seed):
 
 def scores(paths, fields):
     """Return every measure of paths by name."""
-    measures = {
-        "cells": [len(cells) for cells, *_ in paths],
-        "length": [straight + math.sqrt(2) * diagonal for _, straight, diagonal, _ in paths],
-        "turn": [45.0 * turn for *_, turn in paths],
-    }
-    for name, field in fields.items():
-        measures[name] = [sum(field[y, x] for x, y in cells) for cells, *_ in paths]
-    return measures
+    along = Along(paths)
+    measures = {"cells": along.n_cells, "length": along.length, "turn": along.turn}
+    return measures | {name: along.cells(field) for name, field in fields.items()}
 
 
 def make_problem(case, objectives):
