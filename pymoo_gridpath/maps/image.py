@@ -205,11 +205,12 @@ def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:
                 with Image.open(file, formats=FORMATS) as image:
                     check_size(path, *image.size)  # before decoding
                     _check_cost(path, file, image)
-                    turned = image.format == "TIFF" and tags.get(ORIENTATION, (1,))[0] in TURNS
+                    tiff = image.format == "TIFF"
+                    turned = tiff and tags.get(ORIENTATION, (1,))[0] in TURNS
                     image.load()
                     check_exif(path, image)
-                    # Pillow has turned a TIFF by now.
-                    orientation = image.getexif().get(ORIENTATION, 1)
+                    # Pillow has turned a TIFF by now, and older ones still say that it is to be turned.
+                    orientation = 1 if tiff else image.getexif().get(ORIENTATION, 1)
                     pixels = _decode(path, image, tags)
         except (MapError, MemoryError):
             raise
