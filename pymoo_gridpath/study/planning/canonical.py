@@ -12,7 +12,7 @@ from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.paper import PENALTY
 from pymoo_gridpath.problems.grid_path import DEFAULT_PENALTY
 from pymoo_gridpath.study.specification.kinds import SLOTS, is_monotone, is_of_paper, objective_name
-from pymoo_gridpath.study.specification.operators import default_operator
+from pymoo_gridpath.study.specification.operators import default_operator, planner_of
 
 # What `path_operators` and `paper_operators` return, all with their default arguments; the mutation of the latter depends on
 # the problem, so that "paper" stands for it.
@@ -102,7 +102,8 @@ def _resolved_operators(given: Mapping[str, Any], algorithm: Any, representation
         slots = algorithm["slots"]
     else:
         # Differential evolution makes its children itself.
-        slots = list(SLOTS) if CAPABILITIES[algorithm].takes_operators or given["base"] != "default" else ["sampling", "repair"]
+        whole = planner_of(algorithm) is not None or CAPABILITIES[algorithm].takes_operators
+        slots = list(SLOTS) if whole or given["base"] != "default" else ["sampling", "repair"]
     names: dict[str, str] = dict(_PATH)
     named = isinstance(representation, str)
     if base == "random":
