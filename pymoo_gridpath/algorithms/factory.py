@@ -31,6 +31,7 @@ from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
 from pymoo_gridpath.operators.mating import mates_on_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 from pymoo_gridpath.planners import PathOutput, Planner
 from pymoo_gridpath.planners.signature import parameters_of, refuse_missing, refuse_unknown
@@ -38,8 +39,6 @@ from pymoo_gridpath.problems import GridPathProblem
 
 #: Members of a population unless told.
 DEFAULT_POP_SIZE = 100
-
-_OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
 
 
 def make_algorithm(
@@ -156,7 +155,7 @@ def build(
     if operators is not None:
         if not isinstance(operators, Mapping):
             raise CapabilityError(f"operators is {checks.shown(operators)}, expected a mapping such as path_operators returns")
-        refuse_unknown("operators", operators, dict.fromkeys(_OPERATORS))
+        refuse_unknown("operators", operators, SLOTS)
         given.update(_fitted(row, operators, accepted))
     refuse_unknown(row.name, given, (*accepted, *["pop_size"] * row.takes_pop_size, "smoothness", "operators"))
     unchecked = {"smoothness", *_arguments.own_parameters(cls)}
@@ -176,7 +175,9 @@ def build(
         survival = settings.get("survival")
         if isinstance(survival, RankAndSmoothness):
             survival.distinct = True
-    if row.name in ("NSGA2", "SPEA2") and all(mates_on_arrays(given[key]) for key in _OPERATORS[1:] if key in given):
+    if row.name in ("NSGA2", "SPEA2") and all(
+        mates_on_arrays(given[key]) for key in SLOTS if key != "sampling" and key in given
+    ):
         # The same mating several times as fast; some operators need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
     if row.name == "OmniOptimizer" and "selection" not in given:
@@ -277,7 +278,7 @@ def _may_give_one_child(crossover: Any) -> bool:
 def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, Any]:
     if row.one_child and getattr(given.get("crossover"), "n_offsprings", 1) != 1:
         raise CapabilityError(f"{row.name} needs a crossover that gives one child: n_offsprings=1")
-    if given.keys() >= set(_OPERATORS):
+    if given.keys() >= set(SLOTS):
         return {}
     made = default_operators(problem)
     if row.one_child:

@@ -16,6 +16,7 @@ from pymoo_gridpath.algorithms.arguments import parameters
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.errors import CapabilityError, counted
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import PLANNERS, Planner
 from pymoo_gridpath.planners.signature import key_of
 from pymoo_gridpath.registry import Registry
@@ -127,7 +128,7 @@ def _row_of(cls: type[Algorithm], name: str) -> Capability:
         one_child=base is not None and base.one_child,
         repair="repair" in takes,
         needs=needed[0] if needed else "",
-        unpacks={"sampling", "crossover", "mutation", "repair", "eliminate_duplicates"} <= takes.keys(),
+        unpacks=SLOTS.keys() <= takes.keys(),
         deterministic=getattr(cls, "deterministic", False) is True,
         reference=getattr(cls, "reference", False) is True,
         cls=cls,

@@ -9,13 +9,14 @@ from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.objectives import Objective
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import Planner, reference_planner
 from pymoo_gridpath.planners.signature import key_of
 from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec
-from pymoo_gridpath.study.specification.kinds import SLOTS, is_monotone, objective_name, of_package
+from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name, of_package
 from pymoo_gridpath.study.specification.operators import planner_of
 from pymoo_gridpath.study.specification.problem import ProblemSpec, RandomFamily
 from pymoo_gridpath.study.specification.study import Study

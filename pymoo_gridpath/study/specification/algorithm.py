@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.study.specification import operators as _operators
@@ -145,7 +146,7 @@ class AlgorithmSpec:
             )
         for slot in self.operators:
             if slot != "base" and slot not in slots:
-                takes = ", ".join(known for known in _operators.SLOTS if known in slots)
+                takes = ", ".join(known for known in SLOTS if known in slots)
                 raise StudyError(f"{algorithm} takes no {slot}, only {takes}", ("operators", slot))
 
     @property

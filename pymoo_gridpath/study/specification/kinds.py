@@ -6,14 +6,10 @@ import functools
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
-from pymoo.core.crossover import Crossover
-from pymoo.core.duplicate import DuplicateElimination
-from pymoo.core.mutation import Mutation
-from pymoo.core.repair import Repair
-from pymoo.core.sampling import Sampling
 
 from pymoo_gridpath.algorithms import find_algorithm
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.representations import REPRESENTATIONS, Representation
@@ -23,15 +19,6 @@ from pymoo_gridpath.study.specification.own import Kind
 OBJECTIVE = Kind("objective", Objective, OBJECTIVES)
 REPRESENTATION = Kind("representation", Representation, REPRESENTATIONS)
 ALGORITHM = Kind("algorithm", Algorithm, {})
-
-#: What `make_algorithm` takes as operators, and what each must be.
-SLOTS: dict[str, type] = {
-    "sampling": Sampling,
-    "crossover": Crossover,
-    "mutation": Mutation,
-    "repair": Repair,
-    "eliminate_duplicates": DuplicateElimination,
-}
 
 
 def objective_entry(form: Any) -> Any:

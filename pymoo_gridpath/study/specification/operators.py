@@ -13,22 +13,14 @@ from pymoo_gridpath import operators as _operators
 from pymoo_gridpath.algorithms import Capability, find_algorithm
 from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
+from pymoo_gridpath.operators.sets import PATH_SAMPLINGS, SLOTS, path_classes
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.study.specification import own, values
-from pymoo_gridpath.study.specification.kinds import ALGORITHM, SLOTS, of_package
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, of_package
 from pymoo_gridpath.study.specification.own import Kind
 from pymoo_gridpath.study.specification.values import Where
 
-BASES = ("default", "paper", "scalarized", "random")
-
-# An example of each, for messages.
-_EXAMPLES: dict[str, str] = {
-    "sampling": "ScalarizedSampling",
-    "crossover": "SpliceCrossover",
-    "mutation": "PathMutation",
-    "repair": "PathRepair",
-    "eliminate_duplicates": "RowDuplicates",
-}
+BASES = ("default", "paper", *PATH_SAMPLINGS)
 
 
 def read_algorithm(value: Any, where: Where) -> str:
@@ -133,7 +125,7 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
         given = {"class": found.name, **found.arguments}
     table = {"class": given} if isinstance(given, str) else values.table(given, where)
     if "class" not in table:
-        raise StudyError(f"{slot} has no class, expected such as {{ class = {_EXAMPLES[slot]!r} }}", where)
+        raise StudyError(f"{slot} has no class, expected such as {{ class = {path_classes()[slot].__name__!r} }}", where)
     classes = operator_classes(slot)
     name = values.choice(table.pop("class"), classes, where)
     arguments = _own_arguments(classes[name])

@@ -8,6 +8,7 @@ from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms import arguments as _arguments
 from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import StudyError, nearest
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.kinds import ALGORITHM
@@ -20,9 +21,7 @@ _ELSEWHERE = {
     "termination": "the budget of the study",
     "pop_size": "the key pop_size of the algorithm",
     "smoothness": "the key smoothness of the algorithm",
-    **dict.fromkeys(
-        ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates"), "the key operators of the algorithm"
-    ),
+    **dict.fromkeys(SLOTS, "the key operators of the algorithm"),
 }
 # Those of planners.
 _BUDGETS = ("max_seconds", "max_labels")
