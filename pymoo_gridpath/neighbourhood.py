@@ -21,10 +21,10 @@ OPPOSITE = (np.arange(8) + 4) % 8
 DIAGONAL = np.arange(8) % 2 == 1
 
 
-def turns_between(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Return the turn from headings to others, elementwise, in units of 45 degrees."""
+def turns_between(before: np.ndarray, after: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+    """Return the turn from headings to others, elementwise, in units of 45 degrees; written to ``out`` if it is given."""
     apart = np.abs(after - before)
-    return np.minimum(apart, 8 - apart)
+    return np.minimum(apart, 8 - apart, out=out)
 
 
 def turn_units() -> np.ndarray:

@@ -101,7 +101,7 @@ class Paths(ABC):
         dx, dy = self._steps
         heading = _HEADING.take(np.sign(dx) + 3 * np.sign(dy) + 4)
         units = np.zeros(len(heading), dtype=np.int64)
-        units[1:] = turns_between(heading[:-1], heading[1:])
+        turns_between(heading[:-1], heading[1:], out=units[1:])
         # No turn is made at the first and at the last cell of a path.
         units[offsets[:-1]] = units[offsets[1:] - 1] = 0
         return TURN_UNIT * self._sum(units)

@@ -152,7 +152,7 @@ class AlgorithmSuite:
             with pytest.raises(CapabilityError, match="takes no argument 'crossover'"):
                 self.make(problem, operators=operators)
         for slot in wanted:
-            operators[slot]._do = _spy(operators[slot]._do, slot, called)
+            _spy(operators[slot], slot, called)
         given = {slot: operators[slot] for slot in wanted}
         self.run(problem, operators=given)
         assert called == wanted, f"{', '.join(sorted(wanted - called))} was not called"
@@ -301,12 +301,15 @@ def _go_on(algorithm: Any) -> None:
     assert not algorithm.has_next(), "it heeds no termination"
 
 
-def _spy(do: Any, name: str, called: set[str]) -> Any:
-    def spied(*args, **kwargs):
-        called.add(name)
-        return do(*args, **kwargs)
+def _spy(operator: Any, slot: str, called: set[str]) -> None:
+    """Have an operator say that it is called, and its copies, too."""
+    kind = type(operator)
 
-    return spied
+    def spied(self, *args, **kwargs):
+        called.add(slot)
+        return kind._do(self, *args, **kwargs)
+
+    operator.__class__ = type(kind.__name__, (kind,), {"_do": spied})
 
 
 def _digest(pop: Any) -> str:

@@ -42,6 +42,24 @@ class TestNSGA3(AlgorithmSuite):
     algorithm = "NSGA3"
 
 
+class TestCTAEA(AlgorithmSuite):
+    """Needs a crossover that gives one child."""
+
+    algorithm = "CTAEA"
+
+
+class TestParallelMOEAD(AlgorithmSuite):
+    """Takes no constraints."""
+
+    algorithm = "ParallelMOEAD"
+
+
+class TestAGEMOEA(AlgorithmSuite):
+    """Of which make_algorithm changes a part after it is made."""
+
+    algorithm = "AGEMOEA"
+
+
 class TestGDE3(AlgorithmSuite):
     """Takes no crossover."""
 
