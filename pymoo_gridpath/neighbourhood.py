@@ -14,11 +14,20 @@ HEADINGS = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1)
 HEADING_OF = np.full((3, 3), -1)
 HEADING_OF[HEADINGS[:, 1] + 1, HEADINGS[:, 0] + 1] = np.arange(8)
 
+#: The heading that leads back along each heading.
+OPPOSITE = (np.arange(8) + 4) % 8
+
 #: Whether each heading is diagonal.
 DIAGONAL = np.arange(8) % 2 == 1
 
 
+def turns_between(before: np.ndarray, after: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+    """Return the turn from headings to others, elementwise, in units of 45 degrees; written to ``out`` if it is given."""
+    apart = np.abs(after - before)
+    return np.minimum(apart, 8 - apart, out=out)
+
+
 def turn_units() -> np.ndarray:
     """Return the turn between headings in units of 45 degrees, int, shape (9, 8); row 8 is for a path that just starts."""
-    apart = np.abs(np.arange(8)[:, None] - np.arange(8)[None, :])
-    return np.concatenate([np.minimum(apart, 8 - apart), np.zeros((1, 8), dtype=int)])
+    turns = turns_between(np.arange(8)[:, None], np.arange(8)[None, :])
+    return np.concatenate([turns, np.zeros((1, 8), dtype=int)])

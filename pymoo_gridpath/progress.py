@@ -6,9 +6,8 @@ import contextlib
 import sys
 import time
 import warnings
-from collections.abc import Iterator
-
-import numpy as np
+from collections.abc import Callable, Iterator
+from typing import Any
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, visible
@@ -81,8 +80,8 @@ class Progress:
             self.stream.write("\r\x1b[K")
             self.stream.flush()
 
-    def update(self, run: int, algorithm) -> None:
-        """Show the state of run ``run`` (from 0) after a generation of its algorithm."""
+    def update(self, run: int, algorithm, n_legal: Callable[[Any], int]) -> None:
+        """Show the state of run ``run`` (from 0) after a generation of its algorithm, with how many legal paths it has."""
         if not self._due():
             return
         now = time.monotonic()
@@ -90,10 +89,9 @@ class Progress:
         share = min(max(algorithm.termination.perc, 1e-9), 1.0)
         done = (run + share) / self.n_runs
         left = (now - self._start) * (1 - done) / done
-        legal = int(np.count_nonzero(algorithm.pop.get("interfering_cells") == 0))
         runs = f"run {run + 1}/{self.n_runs}, " if self.n_runs > 1 else ""
         generation = min(round(share * self.n_gen), self.n_gen)
-        text = f"{runs}generation {generation}/{self.n_gen}, {legal} legal paths, about {left:.0f} s left"
+        text = f"{runs}generation {generation}/{self.n_gen}, {n_legal(algorithm)} legal paths, about {left:.0f} s left"
         self._write(text)
 
     def note(self, text: str) -> None:

@@ -592,7 +592,7 @@ def _results(w: World) -> dict[str, Call]:
         ),
         "Progress": (progress.Progress, {"n_runs": 1, "n_gen": 2, "stream": None, "interval": 0.1}),
         "Progress.note": (progress.Progress(1, 2).note, {"text": "a"}),
-        "Progress.update": (progress.Progress(1, 2).update, {"run": 0, "algorithm": w.result.algorithm}),
+        "Progress.update": (progress.Progress(1, 2).update, {"run": 0, "algorithm": w.result.algorithm, "n_legal": len}),
         "main": (_command_line, {"argv": ["info", str(w.text_map)]}),
     }
 

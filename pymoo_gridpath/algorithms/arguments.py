@@ -36,6 +36,9 @@ _INEFFECTIVE: dict[str, set[str]] = {
     "MOPSO_CD": {"archive"},
 }
 
+# Whose arguments are known here.
+_PACKAGES = ("builtins", "pymoo", "pymoo_gridpath")
+
 # Values that mean something to pymoo; it takes others as well, and heeds them not at all or in the midst of a run.
 NAMES = {"normalization": ("front", "ever", "no"), "version": ("A", "B"), "de_repair": tuple(DE_REPAIRS)}
 SHARES = ("prob_neighbor_mating", "CR", "perc_detect_change", "perc_diversity", "mu")
@@ -62,8 +65,19 @@ def parameters(cls: type, name: str) -> dict[str, Any]:
     dict
         Default by parameter; ``inspect.Parameter.empty`` where there is none.
     """
-    left_out = _EVERYWHERE | _INEFFECTIVE.get(name, set())
+    ineffective = _INEFFECTIVE.get(name, set())
+    if cls.__module__.partition(".")[0] not in _PACKAGES:
+        # What the nearest class of pymoo sets itself, unless that is listed anew.
+        nearest = next((base for base in cls.__mro__ if base.__module__.startswith("pymoo.")), cls)
+        ineffective = _INEFFECTIVE.get(nearest.__name__, set()) - own_parameters(cls)
+    left_out = _EVERYWHERE | ineffective
     return {key: value for key, value in parameters_of(cls).items() if key not in left_out}
+
+
+def own_parameters(cls: type) -> set[str]:
+    """Return the arguments of a constructor that classes of others list, who check them themselves."""
+    theirs = [base for base in cls.__mro__ if base.__module__.partition(".")[0] not in _PACKAGES]
+    return {key for base in theirs if "__init__" in vars(base) for key in inspect.signature(vars(base)["__init__"]).parameters}
 
 
 def check_values(owner: str, given: dict[str, Any], accepted: dict[str, Any]) -> None:

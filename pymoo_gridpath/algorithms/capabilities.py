@@ -59,6 +59,8 @@ class Capability:
         Its result is the truth that others are measured against.
     takes_pop_size : bool
         `make_algorithm` takes a population size for it.
+    cls : type or None
+        The class, of an algorithm that is none of pymoo's; None: that of ``path``.
     """
 
     name: str
@@ -83,6 +85,7 @@ class Capability:
     deterministic: bool = False
     reference: bool = False
     takes_pop_size: bool = True
+    cls: type | None = None
 
     @property
     def path(self) -> str:

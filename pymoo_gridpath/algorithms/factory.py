@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from pymoo.algorithms.moo.ctaea import CTAEA
 from pymoo.algorithms.moo.nsde import VariantDE
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.crossover import Crossover
@@ -30,19 +31,18 @@ from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
 from pymoo_gridpath.operators.mating import mates_on_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 from pymoo_gridpath.planners import PathOutput, Planner
-from pymoo_gridpath.planners.signature import parameters_of, refuse_unknown
+from pymoo_gridpath.planners.signature import parameters_of, refuse_missing, refuse_unknown
 from pymoo_gridpath.problems import GridPathProblem
 
 #: Members of a population unless told.
 DEFAULT_POP_SIZE = 100
 
-_OPERATORS = ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates")
-
 
 def make_algorithm(
-    name: str,
+    name: str | type[Algorithm] | Algorithm,
     problem,
     pop_size: int | None = None,
     smoothness: bool | None = None,
@@ -53,9 +53,11 @@ def make_algorithm(
 
     Parameters
     ----------
-    name : str
+    name : str, type or pymoo.core.algorithm.Algorithm
         An algorithm of the capability table, one that is registered, see `pymoo_gridpath.registry.register`, or a planner, such
-        as "exact" for `ExactFront`; case and punctuation do not matter: "NSGA-II", "nsga2", "MOEA/D".
+        as "exact" for `ExactFront`; case and punctuation do not matter: "NSGA-II", "nsga2", "MOEA/D". Or a class, of your own,
+        say, which is given what its constructor takes; or an algorithm that is made already, of which a copy is returned, and
+        for which no other argument is left.
     problem : GridPathProblem
         What it is to solve.
     pop_size : int, optional
@@ -97,21 +99,37 @@ def make_algorithm(
     ...
     pymoo_gridpath.errors.CapabilityError: DNSGA2 cannot solve problems with constraints; use obstacles='penalty'
     """
-    row = find_algorithm(name, getattr(problem, "n_obj", None))
+    row = find_algorithm(type(name) if isinstance(name, Algorithm) else name, getattr(problem, "n_obj", None))
+    if isinstance(row, Capability):
+        refuse_problem(row, problem)
+    given = {"pop_size": pop_size, "smoothness": smoothness, "operators": operators}
+    given = {key: value for key, value in given.items() if value is not None}
+    if isinstance(name, Algorithm):
+        return _copied(name, given | kwargs)
     if not isinstance(row, Capability):
-        given = {"pop_size": pop_size, "smoothness": smoothness, "operators": operators}
-        return _planner(row, {key: value for key, value in given.items() if value is not None}, kwargs)
-    refuse_problem(row, problem)
+        return _planner(row, given | kwargs)
     return build(row, problem, pop_size, smoothness, operators, **kwargs)
 
 
-def _planner(cls: type[Planner], given: dict[str, Any], kwargs: Mapping[str, Any]) -> Planner:
-    """Return a planner, with those of the arguments of `make_algorithm` that it takes."""
-    takes = {"pop_size": cls.takes_pop_size, "operators": cls.takes_operators}
-    for key in given:
-        if not takes.get(key, False):
-            raise CapabilityError(f"{cls.__name__} takes no argument {key!r}")
-    return cls(**given, **kwargs)
+def _copied(algorithm: Any, given: Mapping[str, Any]) -> Algorithm:
+    """Return a copy of an algorithm that somebody has made, before it runs."""
+    name = type(algorithm).__name__
+    if given:
+        raise CapabilityError(f"{name} is made already and takes no argument {next(iter(given))!r}; give its class to set it")
+    if algorithm.problem is not None:
+        raise CapabilityError(f"{name} has begun a run, expected an algorithm that has not, or its class")
+    return copy.deepcopy(algorithm)
+
+
+def _planner(cls: type[Planner], given: Mapping[str, Any]) -> Planner:
+    """Return a planner with arguments that it takes."""
+    accepted = cls.parameters()
+    for key, taken in (("pop_size", cls.takes_pop_size), ("operators", cls.takes_operators)):
+        if not taken:
+            accepted.pop(key, None)
+    refuse_unknown(cls.__name__, given, accepted)
+    refuse_missing(cls.__name__, given, accepted)
+    return cls(**given)
 
 
 def build(
@@ -128,16 +146,20 @@ def build(
     pop_size = _arguments.check_whole(row.name, "pop_size", DEFAULT_POP_SIZE if pop_size is None else pop_size)
     cls = class_of(row)
     accepted = _arguments.parameters(cls, row.name)
-    # These two classes need not be told: smoothness is an argument of this function.
-    accepted.pop("smoothness", None)
     given = dict(kwargs)
+    if row.cls is None:
+        # These two classes need not be told: smoothness is an argument of this function.
+        accepted.pop("smoothness", None)
+    elif smoothness is not None and "smoothness" in accepted:
+        given["smoothness"], smoothness = smoothness, None
     if operators is not None:
         if not isinstance(operators, Mapping):
             raise CapabilityError(f"operators is {checks.shown(operators)}, expected a mapping such as path_operators returns")
-        refuse_unknown("operators", operators, dict.fromkeys(_OPERATORS))
+        refuse_unknown("operators", operators, SLOTS)
         given.update(_fitted(row, operators, accepted))
-    refuse_unknown(row.name, given, (*accepted, "pop_size", "smoothness", "operators"))
-    _arguments.check_values(row.name, {key: value for key, value in given.items() if key != "smoothness"}, accepted)
+    refuse_unknown(row.name, given, (*accepted, *["pop_size"] * row.takes_pop_size, "smoothness", "operators"))
+    unchecked = {"smoothness", *_arguments.own_parameters(cls)}
+    _arguments.check_values(row.name, {key: value for key, value in given.items() if key not in unchecked}, accepted)
     _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(accepted, kwargs))
     _arguments.check_whole(row.name, "pop_size", pop_size, most=_arguments.MOST)
     settings = _arguments.fresh_defaults(accepted)
@@ -145,7 +167,7 @@ def build(
         settings["output"] = PathOutput()
     settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
     settings |= _smoothness(row, problem, smoothness, given)
-    settings |= given | _references(row, problem, pop_size, given)
+    settings |= given | _references(row, problem, pop_size, given, accepted)
     if "pop_size" in accepted:
         settings["pop_size"] = pop_size
     if "survival" not in given and isinstance(settings.get("crossover"), SpliceCrossover):
@@ -153,7 +175,9 @@ def build(
         survival = settings.get("survival")
         if isinstance(survival, RankAndSmoothness):
             survival.distinct = True
-    if row.name in ("NSGA2", "SPEA2") and all(mates_on_arrays(given[key]) for key in _OPERATORS[1:] if key in given):
+    if row.name in ("NSGA2", "SPEA2") and all(
+        mates_on_arrays(given[key]) for key in SLOTS if key != "sampling" and key in given
+    ):
         # The same mating several times as fast; some operators need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
     if row.name == "OmniOptimizer" and "selection" not in given:
@@ -163,6 +187,7 @@ def build(
     if "evaluator" in accepted:
         settings.setdefault("evaluator", ArrayEvaluator())
     termination = settings.pop("termination", None)
+    refuse_missing(row.name, settings, accepted)
     algorithm = cls(**settings)
     if termination is not None:
         # Several constructors overwrite the one they are given.
@@ -171,7 +196,7 @@ def build(
         # Their constructors take none. The module needs numba, as they do.
         age = importlib.import_module("pymoo_gridpath.algorithms.age")
         algorithm.survival = age.FiniteAGEMOEASurvival() if row.name == "AGEMOEA" else age.FiniteAGEMOEA2Survival()
-    if row.name == "CTAEA":
+    if isinstance(algorithm, CTAEA):
         # It fills its archive from the first population and never ends if duplicates are missing there.
         algorithm.initialization.eliminate_duplicates = NoDuplicateElimination()
     if isinstance(algorithm.__dict__.get("mating"), VariantDE):
@@ -253,7 +278,7 @@ def _may_give_one_child(crossover: Any) -> bool:
 def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, Any]:
     if row.one_child and getattr(given.get("crossover"), "n_offsprings", 1) != 1:
         raise CapabilityError(f"{row.name} needs a crossover that gives one child: n_offsprings=1")
-    if given.keys() >= set(_OPERATORS):
+    if given.keys() >= set(SLOTS):
         return {}
     made = default_operators(problem)
     if row.one_child:
@@ -289,9 +314,9 @@ def _smoothness(row: Capability, problem, smoothness: bool | None, given: Mappin
     return {"selection": selection(), "survival": survival()}
 
 
-def _references(row: Capability, problem, pop_size: int, given: Mapping[str, Any]) -> dict[str, Any]:
+def _references(row: Capability, problem, pop_size: int, given: Mapping[str, Any], accepted) -> dict[str, Any]:
     if row.needs == "ref_dirs":
-        return {"ref_dirs": _ref_dirs(row, problem, pop_size, given.get("ref_dirs"))}
+        return {"ref_dirs": _ref_dirs(problem, pop_size, given.get("ref_dirs"), accepted)}
     if row.needs == "automated_dm" and given.get("automated_dm") is None:
         raise CapabilityError(f"{row.name} asks a decision maker during the run; give one as automated_dm")
     if row.needs != "ref_points":
@@ -301,22 +326,21 @@ def _references(row: Capability, problem, pop_size: int, given: Mapping[str, Any
             f"{row.name} searches near reference points; give ref_points, one row of {problem.n_obj} values each"
         )
     points = _rows("ref_points", given["ref_points"], problem)
-    if row.name == "RNSGA2" or "pop_per_ref_point" in given:
+    if "pop_per_ref_point" in given or "pop_per_ref_point" not in accepted:
         return {"ref_points": points}
     room = (pop_size - problem.n_obj) // len(points)
     if room < problem.n_obj:
         least = len(points) * problem.n_obj + problem.n_obj
-        raise CapabilityError(f"RNSGA3 needs pop_size {least} or more for {len(points)} reference points, got {pop_size}")
+        raise CapabilityError(f"{row.name} needs pop_size {least} or more for {len(points)} reference points, got {pop_size}")
     per_point = get_number_of_uniform_points(get_partition_closest_to_points(room, problem.n_obj), problem.n_obj)
     return {"ref_points": points, "pop_per_ref_point": per_point}
 
 
-def _ref_dirs(row: Capability, problem, pop_size: int, ref_dirs) -> np.ndarray:
+def _ref_dirs(problem, pop_size: int, ref_dirs, accepted) -> np.ndarray:
     if ref_dirs is None:
         return reference_directions(problem.n_obj, pop_size)
     ref_dirs = _rows("ref_dirs", ref_dirs, problem)
-    own_size = row.name in ("MOEAD", "ParallelMOEAD", "CTAEA")
-    if len(ref_dirs) < 2 or (len(ref_dirs) > pop_size and not own_size):
+    if len(ref_dirs) < 2 or (len(ref_dirs) > pop_size and "pop_size" in accepted):
         raise CapabilityError(f"ref_dirs has {len(ref_dirs)} rows, expected 2 to pop_size = {pop_size}")
     return ref_dirs
 

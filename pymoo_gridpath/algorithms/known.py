@@ -16,6 +16,7 @@ from pymoo_gridpath.algorithms.arguments import parameters
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.errors import CapabilityError, counted
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import PLANNERS, Planner
 from pymoo_gridpath.planners.signature import key_of
 from pymoo_gridpath.registry import Registry
@@ -30,15 +31,15 @@ _PACKAGES = {"scikit-learn": "sklearn"}
 _OWN = {key_of(row.name): row for row in CAPABILITIES.values()}
 
 
-def find_algorithm(name: str, n_obj: int | None = None) -> Capability | type[Planner]:
+def find_algorithm(name: str | type[Algorithm], n_obj: int | None = None) -> Capability | type[Planner]:
     """Return what an algorithm or planner can do: its row of the capability table, or the planner's class.
 
     Both have ``name``, ``deterministic``, ``reference``, ``takes_operators`` and ``takes_pop_size``.
 
     Parameters
     ----------
-    name : str
-        Case and punctuation do not matter.
+    name : str or type
+        Case and punctuation do not matter. Or the class itself, of pymoo, of this package or one's own.
     n_obj : int, optional
         Number of objectives of the problem, for the hint.
 
@@ -50,13 +51,16 @@ def find_algorithm(name: str, n_obj: int | None = None) -> Capability | type[Pla
     Raises
     ------
     CapabilityError
-        If there is none, with the nearest that suits grid problems of so many objectives; or if two go by that name.
+        If there is none, with the nearest that suits grid problems of so many objectives; if two go by that name; or if a class
+        is no algorithm.
 
     Examples
     --------
     >>> find_algorithm("MOEA/D").deterministic, find_algorithm("exact").deterministic
     (False, True)
     """
+    if isinstance(name, type):
+        return _of_class(name)
     key = key_of(name)
     homes = [home for home in (_OWN, ALGORITHMS, PLANNERS) if key in home]
     if len(homes) > 1:
@@ -64,7 +68,7 @@ def find_algorithm(name: str, n_obj: int | None = None) -> Capability | type[Pla
     if key in _OWN:
         return _OWN[key]
     if key in ALGORITHMS:
-        return _row_of(name)
+        return _row_of_name(name)
     if key in PLANNERS:
         return PLANNERS[name]
     for planner in PLANNERS.values():
@@ -74,7 +78,7 @@ def find_algorithm(name: str, n_obj: int | None = None) -> Capability | type[Pla
 
 
 def _unknown(name: str, key: str, n_obj: int | None) -> CapabilityError:
-    rows = [*CAPABILITIES.values(), *map(_row_of, ALGORITHMS)]
+    rows = [*CAPABILITIES.values(), *map(_row_of_name, ALGORITHMS)]
     fit = {key_of(row.name): row.name for row in rows if not row.unfit and (n_obj is None or row.takes(n_obj))}
     fit |= {key_of(planner): planner for planner in PLANNERS}
     near = difflib.get_close_matches(key, fit, n=1, cutoff=0.6)
@@ -83,25 +87,51 @@ def _unknown(name: str, key: str, n_obj: int | None) -> CapabilityError:
     return CapabilityError(f"there is no algorithm {checks.shown(name)}; {hint}")
 
 
-def _row_of(name: str) -> Capability:
-    """Return what a registered algorithm can do: what it says itself, or else what its signature tells."""
-    cls = ALGORITHMS[name]
-    # As it is registered: the name is what finds its class again.
-    name = next(known for known in ALGORITHMS if key_of(known) == key_of(name))
+def _of_class(cls: type) -> Capability | type[Planner]:
+    if not issubclass(cls, Algorithm):
+        raise CapabilityError(f"the algorithm is the class {cls.__name__}, expected one derived from pymoo's Algorithm")
+    if issubclass(cls, Planner):
+        return cls
+    if cls is SmoothMOEAD:
+        return CAPABILITIES["MOEAD"]
+    row = CAPABILITIES.get(cls.__name__)
+    if row is not None and row.module == cls.__module__:
+        return row
+    # Rules for an algorithm of the table are not for another one of that name.
+    taken = key_of(cls.__name__) in _OWN
+    return _row_of(cls, f"{cls.__module__}.{cls.__qualname__}" if taken else cls.__name__)
+
+
+def _row_of_name(name: str) -> Capability:
+    # As it is registered.
+    return _row_of(ALGORITHMS[name], next(known for known in ALGORITHMS if key_of(known) == key_of(name)))
+
+
+def _row_of(cls: type[Algorithm], name: str) -> Capability:
+    """Return what an algorithm of others can do: what it says itself, or else what its signature tells."""
     row = getattr(cls, "capability", None)
     if row is not None:
-        return replace(checks.instance(f"the capability of {name}", row, Capability, error=CapabilityError), name=name)
+        row = checks.instance(f"the capability of {name}", row, Capability, error=CapabilityError)
+        return replace(row, name=name, module=cls.__module__, cls=cls)
     takes = parameters(cls, name)
+    bases = (CAPABILITIES.get(base.__name__) for base in cls.__mro__ if base.__module__.startswith("pymoo."))
+    base = next(filter(None, bases), None)
     needed = [key for key in ("ref_dirs", "ref_points") if takes.get(key) is inspect.Parameter.empty]
     return Capability(
         name,
         cls.__module__,
         min_objectives=1,
-        takes_operators={"crossover", "mutation"} <= takes.keys(),
-        takes_pop_size="pop_size" in takes,
+        takes_operators=bool({"crossover", "mutation"} & takes.keys()),
+        # Of as many directions, the default of what needs some.
+        takes_pop_size="pop_size" in takes or "ref_dirs" in needed,
+        constraints=base is None or base.constraints,
+        one_child=base is not None and base.one_child,
         repair="repair" in takes,
         needs=needed[0] if needed else "",
-        unpacks={"sampling", "crossover", "mutation", "repair", "eliminate_duplicates"} <= takes.keys(),
+        unpacks=SLOTS.keys() <= takes.keys(),
+        deterministic=getattr(cls, "deterministic", False) is True,
+        reference=getattr(cls, "reference", False) is True,
+        cls=cls,
     )
 
 
@@ -113,8 +143,8 @@ def class_of(row: Capability) -> type:
     CapabilityError
         If it needs a package that is not installed.
     """
-    if row.name in ALGORITHMS and key_of(row.name) not in _OWN:
-        return ALGORITHMS[row.name]
+    if row.cls is not None:
+        return row.cls
     if row.name == "MOEAD":
         return SmoothMOEAD
     package = _PACKAGES.get(row.extra, row.extra)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from pymoo.core.algorithm import Algorithm
 from pymoo.core.termination import Termination
@@ -18,6 +18,8 @@ from pymoo_gridpath.problems import GridPathProblem
 
 #: Members of a population, generations of a run, and what an interfering cell adds to every objective, in the paper.
 POP_SIZE, N_GEN, PENALTY = 500, 500, 1.0
+#: The coding that the paper found best.
+REPRESENTATION = "integer"
 
 
 class Setup(NamedTuple):
@@ -39,7 +41,7 @@ def ahmed_deb_2013(
     grid: OccupancyGrid,
     start: Sequence[int],
     goal: Sequence[int],
-    representation: str = "integer",
+    representation: str = REPRESENTATION,
     objectives: Sequence[str | Objective] | str = ("length", "vulnerability"),
     pop_size: int = POP_SIZE,
     n_gen: int = N_GEN,
@@ -97,13 +99,24 @@ def ahmed_deb_2013(
         checks.whole(name, value, 1)
     checks.instance("termination", termination, Termination, " of pymoo", optional=True)
     made = make_objectives(objectives)
-    if len(made) == 1:
-        problem_options.setdefault("obstacles", "constraint")
-    if penalty is None and problem_options.get("obstacles", "penalty") == "penalty":
-        penalty = PENALTY
-    problem = GridPathProblem(grid, start, goal, representation, made, penalty=penalty, **problem_options)
+    obstacles, penalty = paper_treatment(len(made), problem_options.pop("obstacles", None), penalty)
+    problem = GridPathProblem(grid, start, goal, representation, made, obstacles, penalty, **problem_options)
     if len(made) == 1:
         algorithm = make_algorithm("GA", problem, pop_size, operators=paper_operators(problem, eta_crossover=2.0))
     else:
         algorithm = make_algorithm("NSGA2", problem, pop_size, smoothness=len(made) == 2)
     return Setup(problem, algorithm, termination or MaximumGenerationTermination(n_gen))
+
+
+def paper_treatment(n_obj: int, obstacles: str | None = None, penalty: float | None = None) -> tuple[Any, float | None]:
+    """Return how the paper treats obstacles, and what an interfering cell costs, where neither is given.
+
+    Parameters
+    ----------
+    n_obj : int
+        Number of objectives; with one, obstacles are a constraint (section 5.5), else a penalty (section 4.1).
+    obstacles, penalty : optional
+        What is given instead.
+    """
+    obstacles = ("constraint" if n_obj == 1 else "penalty") if obstacles is None else obstacles
+    return obstacles, PENALTY if penalty is None and obstacles == "penalty" else penalty

@@ -7,9 +7,12 @@ from typing import Any
 from pymoo.core.termination import Termination
 from pymoo.termination.max_gen import MaximumGenerationTermination
 
+from pymoo_gridpath.algorithms.paper import N_GEN
+from pymoo_gridpath.problems.members import Members
+
 
 class FirstLegalPath(Termination):
-    """End a run as soon as the population holds a path without interfering cells, or after ``n_max_gen`` generations.
+    """End a run as soon as the population holds a legal path, or after ``n_max_gen`` generations.
 
     Parameters
     ----------
@@ -26,11 +29,11 @@ class FirstLegalPath(Termination):
     Ahmed and Deb (2013), section 6.
     """
 
-    def __init__(self, n_max_gen: int = 500):
+    def __init__(self, n_max_gen: int = N_GEN):
         super().__init__()
         self.budget = MaximumGenerationTermination(n_max_gen)
         self.found = False
 
     def _update(self, algorithm: Any) -> float:
-        self.found = bool((algorithm.pop.get("interfering_cells") == 0).any())
+        self.found = Members(algorithm).n_legal > 0
         return 1.0 if self.found else self.budget.update(algorithm)

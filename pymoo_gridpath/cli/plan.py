@@ -8,8 +8,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pymoo_gridpath.cli.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, cell, folder, natural, positive
 from pymoo_gridpath.cli.maps import add_reading, load, unknown_of
 from pymoo_gridpath.errors import GridPathError, visible
@@ -143,7 +141,7 @@ def _plan(arguments) -> int:
     if trade_off.advice:
         say(trade_off.advice)
     if len(results) > 1:
-        print(f"{sum(_found_legal(result) for result in results)} of {len(results)} runs found a legal path")
+        print(f"{sum(_n_legal(result.algorithm) > 0 for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(visible(file) for file in files), flush=True)
     history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
     figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
@@ -205,7 +203,7 @@ def _search(problem, name: str, spec, algorithm, arguments, stop: _StopOnCtrlC) 
     from pymoo_gridpath.convergence import ConvergenceRecorder
 
     def observe(run, algorithm):
-        progress.update(run, algorithm)
+        progress.update(run, algorithm, _n_legal)
         return stop.requested
 
     def watch(meter):
@@ -220,8 +218,10 @@ def _search(problem, name: str, spec, algorithm, arguments, stop: _StopOnCtrlC) 
         return minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)
 
 
-def _found_legal(result) -> bool:
-    return bool(np.any(np.asarray(result.pop.get("interfering_cells")) == 0))
+def _n_legal(algorithm) -> int:
+    from pymoo_gridpath.problems.members import Members
+
+    return Members(algorithm).n_legal
 
 
 def _write_paths(results, arguments, name: str, source: dict, interrupted: bool):

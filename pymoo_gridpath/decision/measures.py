@@ -6,6 +6,7 @@ import numpy as np
 
 from pymoo_gridpath.fields import BoxedField, obstacle_potential
 from pymoo_gridpath.objectives import Vulnerability, boxed_field_of, prepared
+from pymoo_gridpath.problems.members import are_legal
 from pymoo_gridpath.representations.base import representation_of
 
 
@@ -45,7 +46,6 @@ class PathMeasures:
 
     def legal(self, paths) -> np.ndarray:
         """Return which of N paths cross no occupied cell and keep the potential limit if the problem has one, shape (N,)."""
-        legal = np.asarray(paths.interfering_cells) == 0
-        if self.problem.potential_limit is None:
-            return legal
-        return legal & (self.problem.over_limit(self.vulnerability(paths)) <= 0)
+        limited = self.problem.potential_limit is not None
+        over = self.problem.over_limit(self.vulnerability(paths)) if limited else None
+        return are_legal(paths.interfering_cells, over)

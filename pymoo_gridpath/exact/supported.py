@@ -11,6 +11,7 @@ import numpy as np
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.neighbourhood import OPPOSITE
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
 # Searches that are made side by side, whatever the machine, so that results are the same; in threads, which compiled kernels
@@ -229,7 +230,7 @@ def _spent(moves: Moves, costs: Costs, k: int, start: int, meter: Meter) -> np.n
         enter = np.zeros_like(costs.enter[[k, k]])
         for m in range(8):
             leads = np.flatnonzero(moves.legal >> np.uint8(m) & 1)
-            enter[:, leads, (m + 4) % 8] = costs.enter[k, leads + moves.offsets[m], m]
+            enter[:, leads, OPPOSITE[m]] = costs.enter[k, leads + moves.offsets[m], m]
     # The search enters the start instead of the cell that it set out from.
     field = np.stack([costs.field[k]] * 2)
     ahead = backward_costs(moves.backward(), step, field, start, stop=meter.stop, enter=enter)[0][0]

@@ -8,6 +8,8 @@ from pymoo.core.variable import Real
 
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.parameters import (
+    CROSSOVER_RATE,
+    ETA_CROSSOVER,
     bounds_of,
     check_whole_rows,
     generator,
@@ -56,7 +58,14 @@ class DiscreteSBX(Crossover):
     search", Journal of Mechanical Design 120, 1998 (discrete variables).
     """
 
-    def __init__(self, eta: float = 10.0, prob_var: float = 0.5, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
+    def __init__(
+        self,
+        eta: float = ETA_CROSSOVER,
+        prob_var: float = 0.5,
+        prob: float = CROSSOVER_RATE,
+        n_offsprings: int = 2,
+        **kwargs,
+    ):
         super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
         in_range("eta", eta, 0, 1000)
         in_range("prob_var", prob_var, 0, 1)
@@ -125,7 +134,7 @@ class PointCrossover(Crossover):
         Children kept of each mating.
     """
 
-    def __init__(self, n_points: int, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
+    def __init__(self, n_points: int, prob: float = CROSSOVER_RATE, n_offsprings: int = 2, **kwargs):
         super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
         self.n_points = whole("n_points", n_points, 1, 10**9)
 
@@ -153,7 +162,7 @@ class TwoPointCrossover(PointCrossover):
     See `PointCrossover` for what it needs beside it.
     """
 
-    def __init__(self, prob: float = 0.9, **kwargs):
+    def __init__(self, prob: float = CROSSOVER_RATE, **kwargs):
         super().__init__(2, prob=prob, **kwargs)
 
 
@@ -163,7 +172,7 @@ class SinglePointCrossover(PointCrossover):
     See `PointCrossover` for what it needs beside it.
     """
 
-    def __init__(self, prob: float = 0.9, **kwargs):
+    def __init__(self, prob: float = CROSSOVER_RATE, **kwargs):
         super().__init__(1, prob=prob, **kwargs)
 
 
@@ -186,7 +195,14 @@ class MixedCrossover(Crossover):
     Ahmed and Deb (2013), section 2.2.
     """
 
-    def __init__(self, eta: float = 10.0, prob_var: float = 0.5, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
+    def __init__(
+        self,
+        eta: float = ETA_CROSSOVER,
+        prob_var: float = 0.5,
+        prob: float = CROSSOVER_RATE,
+        n_offsprings: int = 2,
+        **kwargs,
+    ):
         super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
         self.bits = SinglePointCrossover()
         self.integers = DiscreteSBX(eta, prob_var)

@@ -9,7 +9,16 @@ from pymoo.core.variable import Real
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.crossover import bits_of
-from pymoo_gridpath.operators.parameters import bounds_of, check_whole_rows, generator, in_range, number, rate_of, rows
+from pymoo_gridpath.operators.parameters import (
+    ETA_MUTATION,
+    bounds_of,
+    check_whole_rows,
+    generator,
+    in_range,
+    number,
+    rate_of,
+    rows,
+)
 
 
 class DiscretePolynomialMutation(Mutation):
@@ -43,7 +52,7 @@ class DiscretePolynomialMutation(Mutation):
     2.2 and 5.2.
     """
 
-    def __init__(self, eta: float = 20.0, prob_var: float | None = None, prob: float = 1.0, **kwargs):
+    def __init__(self, eta: float = ETA_MUTATION, prob_var: float | None = None, prob: float = 1.0, **kwargs):
         super().__init__(
             prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1, optional=True), **kwargs
         )
@@ -163,7 +172,9 @@ class MixedMutation(Mutation):
     Ahmed and Deb (2013), section 2.2.
     """
 
-    def __init__(self, eta: float = 20.0, prob_var: float | None = None, final: float = 0.2, prob: float = 1.0, **kwargs):
+    def __init__(
+        self, eta: float = ETA_MUTATION, prob_var: float | None = None, final: float = 0.2, prob: float = 1.0, **kwargs
+    ):
         super().__init__(
             prob=in_range("prob", prob, 0, 1), prob_var=in_range("prob_var", prob_var, 0, 1, optional=True), **kwargs
         )

@@ -11,6 +11,9 @@ from pymoo.core.variable import Variable
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 
+#: What the paper gives for its crossovers and mutations, the rate of a mating to cross and distribution indices, section 5.2.
+CROSSOVER_RATE, ETA_CROSSOVER, ETA_MUTATION = 0.9, 10.0, 20.0
+
 
 def number(parameter: Any) -> float:
     """Return the number that a parameter stands for."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pymoo.core.crossover import Crossover
 
-from pymoo_gridpath.operators.parameters import in_range, one_or_two, whole
+from pymoo_gridpath.operators.parameters import CROSSOVER_RATE, in_range, one_or_two, whole
 from pymoo_gridpath.operators.path_terrain import paths_of, random_weights, terrain_of
 from pymoo_gridpath.representations.base import max_cells
 from pymoo_gridpath.search.splice import splice
@@ -30,7 +30,7 @@ class SpliceCrossover(Crossover):
         Children of each mating; algorithms that use one, such as C-TAEA, need 1.
     """
 
-    def __init__(self, reach: int = 4, prob: float = 0.9, n_offsprings: int = 2, **kwargs):
+    def __init__(self, reach: int = 4, prob: float = CROSSOVER_RATE, n_offsprings: int = 2, **kwargs):
         super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
         self.reach = whole("reach", reach, 0, 64)
 

@@ -12,7 +12,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid, check_grid
-from pymoo_gridpath.neighbourhood import HEADING_OF, TURN_UNIT
+from pymoo_gridpath.neighbourhood import HEADING_OF, TURN_UNIT, turns_between
 from pymoo_gridpath.paths.sequences import Sequences, check_sequences
 
 # The heading of a step by the signs of (dx, dy): entry 4 + sign(dx) + 3 * sign(dy).
@@ -100,9 +100,8 @@ class Paths(ABC):
         offsets = self.sequences.offsets
         dx, dy = self._steps
         heading = _HEADING.take(np.sign(dx) + 3 * np.sign(dy) + 4)
-        apart = np.abs(heading[1:] - heading[:-1])
         units = np.zeros(len(heading), dtype=np.int64)
-        np.minimum(apart, 8 - apart, out=units[1:])
+        turns_between(heading[:-1], heading[1:], out=units[1:])
         # No turn is made at the first and at the last cell of a path.
         units[offsets[:-1]] = units[offsets[1:] - 1] = 0
         return TURN_UNIT * self._sum(units)

@@ -14,6 +14,7 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.planners.display import PathOutput
 from pymoo_gridpath.planners.signature import key_of, parameters_of, refuse_unknown
+from pymoo_gridpath.problems.members import are_legal
 from pymoo_gridpath.registry import Registry
 from pymoo_gridpath.representations.base import representation_of
 
@@ -143,17 +144,15 @@ class Planner(Algorithm, ABC):
     def _refuse_illegal(self, pop) -> None:
         if not len(pop):
             return
-        crossing = np.flatnonzero(np.asarray(pop.get("interfering_cells")) > 0)
-        violating = np.flatnonzero(np.asarray(pop.get("CV"), dtype=float).reshape(len(pop), -1).max(axis=1) > 0)
-        for found, what in (
-            (crossing, "crosses an obstacle or makes a step that is not legal"),
-            (violating, "exceeds the limit"),
-        ):
-            if len(found):
-                raise GridPathError(
-                    f"the planner {self._name} returned {counted(len(pop), 'path')} of which number {found[0]} {what}, "
-                    f"expected legal paths"
-                )
+        crossed, violation = np.asarray(pop.get("interfering_cells")), np.asarray(pop.get("CV"), dtype=float)
+        illegal = np.flatnonzero(~are_legal(crossed, violation.reshape(len(pop), -1).max(axis=1)))
+        if len(illegal):
+            number = illegal[0]
+            what = "crosses an obstacle or makes a step that is not legal" if crossed[number] else "exceeds the limit"
+            raise GridPathError(
+                f"the planner {self._name} returned {counted(len(pop), 'path')} of which number {number} {what}, "
+                f"expected legal paths"
+            )
 
     def _set_optimum(self):
         # All of them: a planner returns what it stands for, and pymoo's filter would compare every path with every other.

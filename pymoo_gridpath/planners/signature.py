@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-from pymoo_gridpath.errors import CapabilityError, nearest
+from pymoo_gridpath.errors import CapabilityError, counted, nearest
 
 
 def key_of(name: object) -> str:
@@ -54,4 +54,19 @@ def refuse_unknown(owner: str, given: Iterable[str], accepted: Iterable[str]) ->
     accepted = sorted(set(accepted))
     for key in given:
         if key not in accepted:
-            raise CapabilityError(f"{owner} takes no argument {key!r}; {nearest(key, accepted, 'it takes')}")
+            hint = nearest(key, accepted, "it takes") if accepted else "it takes none"
+            raise CapabilityError(f"{owner} takes no argument {key!r}; {hint}")
+
+
+def refuse_missing(owner: str, given: Iterable[str], accepted: Mapping[str, Any]) -> None:
+    """Refuse to do without keyword arguments that have no default.
+
+    Raises
+    ------
+    CapabilityError
+        With those that are missing.
+    """
+    given = set(given)
+    missing = [key for key, default in accepted.items() if default is inspect.Parameter.empty and key not in given]
+    if missing:
+        raise CapabilityError(f"{owner} needs {counted(len(missing), 'more argument')}: {', '.join(missing)}")

@@ -36,6 +36,13 @@ PART_SIZE = 12000
 OBSTACLES: tuple[Obstacles, ...] = ("penalty", "constraint", "limit")
 
 
+def default_penalty(obstacles: Obstacles, n_cells: int) -> float | None:
+    """Return what an interfering cell costs by default on a grid of so many cells; None where nothing is added."""
+    if obstacles == "constraint":
+        return None
+    return float(n_cells) if obstacles == "limit" else DEFAULT_PENALTY
+
+
 class GridPathProblem(Problem):
     """Paths from a start to a goal on an occupancy grid, to be minimised in length, vulnerability, turn or other objectives.
 
@@ -135,7 +142,7 @@ class GridPathProblem(Problem):
         if obstacles == "constraint" and penalty is not None:
             raise GridPathError("penalty is for obstacles='penalty' and 'limit', not for obstacles='constraint'")
         self.obstacles = obstacles
-        given = self._default_penalty() if penalty is None else penalty
+        given = default_penalty(obstacles, grid.occupied.size) or DEFAULT_PENALTY if penalty is None else penalty
         self.penalty = checks.number("penalty", given, 0.0, above=True, expected="a positive number")
         self.potential_limit = self._check_limit(potential_limit)
         check_axis(axis)
@@ -197,9 +204,6 @@ class GridPathProblem(Problem):
             )
         if axis != "auto":
             raise GridPathError(f"axis={axis!r} is for a representation by name; give it to the representation instead")
-
-    def _default_penalty(self) -> float:
-        return self.grid.occupied.size if self.obstacles == "limit" else DEFAULT_PENALTY
 
     @property
     def objective_names(self) -> list[str]:

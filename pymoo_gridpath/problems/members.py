@@ -29,7 +29,9 @@ class Members:
     def __init__(self, algorithm):
         members = algorithm.pop.tolist()
         self._names = algorithm.problem.objective_names
-        self._legal = _legal(members, algorithm.problem.has_constraints())
+        crossed = np.array([one.data["interfering_cells"] for one in members])
+        violation = [one.CV[0] for one in members] if algorithm.problem.has_constraints() else None
+        self._legal = [members[k] for k in np.flatnonzero(are_legal(crossed, violation))]
         self.n_members, self.n_legal = len(members), len(self._legal)
         self.F = np.array([one.F for one in self._legal], dtype=float).reshape(-1, algorithm.problem.n_obj)
         self.turn = np.array([one.data["turn"] for one in self._legal], dtype=float)
@@ -63,7 +65,15 @@ class Members:
         return np.array([self._legal[k].X for k in indices])
 
 
-def _legal(individuals: list, constrained: bool) -> list:
-    if not constrained:
-        return [one for one in individuals if not one.data["interfering_cells"]]
-    return [one for one in individuals if not one.data["interfering_cells"] and one.CV[0] <= 0]
+def are_legal(interfering_cells, violation=None) -> np.ndarray:
+    """Return which paths are legal: those that cross no obstacle and violate no constraint, if there is one.
+
+    Parameters
+    ----------
+    interfering_cells : array_like, shape (N,)
+        Numbers of occupied cells that they cross.
+    violation : array_like, shape (N,), optional
+        What constraints say of them, such as how far they are over the potential limit; zero or less where they are kept.
+    """
+    legal = np.asarray(interfering_cells) == 0
+    return legal if violation is None else legal & (np.asarray(violation) <= 0)

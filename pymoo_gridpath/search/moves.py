@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from pymoo_gridpath.grid import Box, OccupancyGrid
-from pymoo_gridpath.neighbourhood import HEADINGS
+from pymoo_gridpath.neighbourhood import HEADINGS, OPPOSITE
 
 
 def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
@@ -16,7 +16,7 @@ def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     back = np.zeros_like(legal)
     for m in range(8):
         leads = np.flatnonzero(legal >> np.uint8(m) & 1)
-        back[leads + offsets[m]] |= np.uint8(1 << (m + 4) % 8)
+        back[leads + offsets[m]] |= np.uint8(1 << OPPOSITE[m])
     return back
 
 
@@ -81,7 +81,7 @@ class Moves:
     def entered(self) -> np.ndarray:
         """Whether a step along each heading ends in each cell, bool, shape (8, n_cells)."""
         back = self.backward().legal
-        return np.stack([(back >> np.uint8((m + 4) % 8) & 1).astype(bool) for m in range(8)])
+        return np.stack([(back >> np.uint8(OPPOSITE[m]) & 1).astype(bool) for m in range(8)])
 
     def backward(self) -> Moves:
         """Return the steps that lead back: along the opposite heading wherever a step leads forth."""

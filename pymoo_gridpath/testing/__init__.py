@@ -8,13 +8,17 @@ import pytest
 
 # Before they are imported, so that their assertions say what the values were.
 pytest.register_assert_rewrite(
-    *(f"pymoo_gridpath.testing.{name}" for name in ("maps", "objectives", "operators", "planners", "representations"))
+    *(
+        f"pymoo_gridpath.testing.{name}"
+        for name in ("algorithms", "maps", "objectives", "operators", "planners", "representations")
+    )
 )
 
+from pymoo_gridpath.testing.algorithms import AlgorithmSuite  # noqa: E402
 from pymoo_gridpath.testing.maps import MapFormatSuite  # noqa: E402
 from pymoo_gridpath.testing.objectives import ObjectiveSuite  # noqa: E402
 from pymoo_gridpath.testing.operators import OperatorSuite  # noqa: E402
 from pymoo_gridpath.testing.planners import PlannerSuite  # noqa: E402
 from pymoo_gridpath.testing.representations import RepresentationSuite  # noqa: E402
 
-__all__ = ["MapFormatSuite", "ObjectiveSuite", "OperatorSuite", "PlannerSuite", "RepresentationSuite"]
+__all__ = ["AlgorithmSuite", "MapFormatSuite", "ObjectiveSuite", "OperatorSuite", "PlannerSuite", "RepresentationSuite"]

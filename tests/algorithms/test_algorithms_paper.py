@@ -15,6 +15,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+from pymoo_gridpath.problems.members import are_legal
 
 GRID = random_dense_grid(10, 0.3, 1)
 QUERY = (0, 0), (9, 9)
@@ -87,6 +88,20 @@ def test_first_legal_path_ends_the_run_in_its_generation():
     assert result.algorithm.termination.found == bool((result.pop.get("interfering_cells") == 0).any())
 
 
+def test_a_path_over_the_limit_is_no_legal_path():
+    setup = ahmed_deb_2013(GRID, *QUERY, pop_size=60, termination=FirstLegalPath(12), obstacles="limit", potential_limit=1e-9)
+    result = minimize(*setup, seed=3)
+    pop = result.pop
+    assert ((pop.get("interfering_cells") == 0) & (pop.get("CV")[:, 0] > 0)).any()
+    assert not result.algorithm.termination.found and result.algorithm.n_gen - 1 == 12
+
+
+def test_legal_is_what_crosses_nothing_and_violates_nothing():
+    assert are_legal([0, 1, 0, 2]).tolist() == [True, False, True, False]
+    assert are_legal([0, 1, 0, 0], [0.0, 0.0, 0.1, -3.0]).tolist() == [True, False, False, True]
+    assert are_legal([]).shape == (0,)
+
+
 def test_runs_are_those_of_minimize_one_by_one():
     setup = ahmed_deb_2013(GRID, *QUERY, pop_size=20, n_gen=5)
     seen = []
@@ -111,6 +126,7 @@ import hashlib, sys
 from pymoo.optimize import minimize
 from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+from pymoo_gridpath.problems.members import are_legal
 problem = GridPathProblem(random_dense_grid(10, 0.3, 1), (0, 0), (9, 9), sys.argv[2])
 result = minimize(problem, make_algorithm(sys.argv[1], problem, pop_size=30), ("n_gen", 10), seed=5)
 pop = result.pop

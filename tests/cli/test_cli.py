@@ -330,7 +330,6 @@ def test_version_and_help(capsys):
 class FakeAlgorithm:
     def __init__(self, perc):
         self.termination = type("T", (), {"perc": perc})()
-        self.pop = type("P", (), {"get": lambda self, key: __import__("numpy").array([0, 2, 0])})()
 
 
 def test_progress_shows_on_a_terminal_and_clears_its_line():
@@ -340,13 +339,13 @@ def test_progress_shows_on_a_terminal_and_clears_its_line():
 
     stream = Terminal()
     with Progress(3, 200, stream, interval=0) as progress:
-        progress.update(1, FakeAlgorithm(0.25))
+        progress.update(1, FakeAlgorithm(0.25), lambda algorithm: 2)
     text = stream.getvalue()
     assert "run 2/3, generation 50/200, 2 legal paths" in text and "s left" in text
     assert text.endswith("\r\x1b[K")
     silent = io.StringIO()
     with Progress(3, 200, silent, interval=0) as progress:
-        progress.update(1, FakeAlgorithm(0.25))
+        progress.update(1, FakeAlgorithm(0.25), lambda algorithm: 2)
     assert silent.getvalue() == ""
 
 

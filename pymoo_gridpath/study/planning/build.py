@@ -146,34 +146,35 @@ def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> A
             potential_limit=problem.potential_limit,
         )
         return setup.algorithm
-    if not isinstance(algorithm["algorithm"], str):
-        return _own_algorithm(algorithm, problem)
-    if planner_of(algorithm["algorithm"]) is not None:
-        given = {key: value for key, value in algorithm.items() if key != "algorithm"}
-        return make_algorithm(algorithm["algorithm"], problem, **given)
-    return make_algorithm(
-        algorithm["algorithm"],
-        problem,
-        pop_size=algorithm["pop_size"],
-        smoothness=algorithm["smoothness"],
-        operators=_operators(algorithm["operators"], problem),
-        **algorithm["parameters"],
-    )
+    given = {key: value for key, value in algorithm.items() if key not in ("algorithm", "parameters")}
+    if "operators" in given:
+        given["operators"] = _operators(given["operators"], problem)
+    named = algorithm["algorithm"]
+    if not isinstance(named, str):
+        named = own.class_of(named, ALGORITHM)
+    return make_algorithm(named, problem, **given, **algorithm.get("parameters", {}))
 
 
-def _own_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> Algorithm:
-    """Return an algorithm that is none of this package or pymoo, with what its constructor takes of a study's settings."""
-    from pymoo_gridpath.algorithms import reference_directions
+def build_planner(algorithm: Mapping[str, Any], problem: GridPathProblem, **most: float) -> tuple[Any, bool]:
+    """Return a new planner with budgets of no more than is said, and whether it takes any of these.
 
-    options = dict(algorithm["parameters"])
-    if "pop_size" in algorithm:
-        options["pop_size"] = algorithm["pop_size"]
-    if "operators" in algorithm:
-        options |= _operators(algorithm["operators"], problem)
-    needed = own.parameters_of(own.class_of(algorithm["algorithm"], ALGORITHM)).get("ref_dirs")
-    if needed is not None and needed.default is needed.empty and "ref_dirs" not in options:
-        options["ref_dirs"] = reference_directions(problem.n_obj, options.get("pop_size", 100))
-    return own.make(algorithm["algorithm"], ALGORITHM, **options)
+    Parameters
+    ----------
+    algorithm : mapping
+        The canonical form of a planner.
+    problem : GridPathProblem
+    **most : float
+        Such as ``max_seconds``; planners that do not take it are made without.
+    """
+    named = algorithm["algorithm"]
+    planner: Any = planner_of(named) or own.class_of(named, ALGORITHM)
+    # What is not of this package has them among its parameters.
+    given = dict(algorithm if isinstance(named, str) else algorithm["parameters"])
+    taken = {key: value for key, value in most.items() if key in planner.parameters()}
+    for key, value in taken.items():
+        given[key] = value if given.get(key) is None else min(given[key], value)
+    content = given if isinstance(named, str) else {**algorithm, "parameters": given}
+    return build_algorithm(content, problem), bool(taken)
 
 
 def _operators(specs: Mapping[str, Any], problem: GridPathProblem) -> dict[str, Any]:

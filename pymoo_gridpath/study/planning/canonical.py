@@ -9,31 +9,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
-from pymoo_gridpath.algorithms.paper import PENALTY
-from pymoo_gridpath.problems.grid_path import DEFAULT_PENALTY
-from pymoo_gridpath.study.specification.kinds import SLOTS, is_monotone, is_of_paper, objective_name
-from pymoo_gridpath.study.specification.operators import default_operator
-
-# What `path_operators` and `paper_operators` return, all with their default arguments; the mutation of the latter depends on
-# the problem, so that "paper" stands for it.
-_PATH: dict[str, str] = {
-    "sampling": "ScalarizedSampling",
-    "crossover": "SpliceCrossover",
-    "mutation": "PathMutation",
-    "repair": "PathRepair",
-    "eliminate_duplicates": "RowDuplicates",
-}
-_PAPER = {"sampling": "RandomSampling", "repair": "EdgeFixing", "eliminate_duplicates": "RowDuplicates"}
-_PAPER_CROSSOVERS = {"binary": "TwoPointCrossover", "mixed": "MixedCrossover"}
+from pymoo_gridpath.algorithms.paper import REPRESENTATION, paper_treatment
+from pymoo_gridpath.operators.sets import SLOTS, default_set, paper_classes, path_classes
+from pymoo_gridpath.problems.grid_path import default_penalty
+from pymoo_gridpath.representations import Representation
+from pymoo_gridpath.study.specification.kinds import is_monotone, is_of_paper, objective_name, of_package
+from pymoo_gridpath.study.specification.operators import default_operator, planner_of
 
 
 def settle(problem: Mapping[str, Any]) -> dict[str, Any]:
     """Return a problem with the default penalty of its obstacle handling written out."""
     settled = dict(problem)
-    if settled["penalty"] is None and settled["obstacles"] == "penalty":
-        settled["penalty"] = DEFAULT_PENALTY
-    elif settled["penalty"] is None and settled["obstacles"] == "limit":
-        settled["penalty"] = float(n_cells(settled["grid"]))
+    if settled["penalty"] is None:
+        settled["penalty"] = default_penalty(settled["obstacles"], n_cells(settled["grid"]))
     return settled
 
 
@@ -85,11 +73,14 @@ def _preset_overrides(problem: Mapping[str, Any], overrides: Mapping[str, Any]) 
     """Return what the paper's planner changes in a problem, see `ahmed_deb_2013`."""
     brought: dict[str, Any] = {}
     if not is_of_paper(problem["representation"]):
-        brought["representation"] = "integer"
-    if len(problem["objectives"]) == 1 and problem["obstacles"] == "penalty":
-        brought["obstacles"] = "constraint"
-    if {**problem, **brought, **overrides}["obstacles"] == "penalty":
-        brought["penalty"] = PENALTY
+        brought["representation"] = REPRESENTATION
+    # "penalty" is what a problem has unless it says otherwise.
+    asked = overrides.get("obstacles", problem["obstacles"] if problem["obstacles"] != "penalty" else None)
+    obstacles, penalty = paper_treatment(len(problem["objectives"]), asked, overrides.get("penalty"))
+    if obstacles != problem["obstacles"]:
+        brought["obstacles"] = obstacles
+    if penalty is not None:
+        brought["penalty"] = penalty
     return brought | dict(overrides)
 
 
@@ -97,18 +88,23 @@ def _resolved_operators(given: Mapping[str, Any], algorithm: Any, representation
     """Return every operator of an algorithm on problems of a representation; "paper" where `paper_operators` decides."""
     base = given["base"]
     if base == "default":
-        base = "paper" if is_of_paper(representation) else "scalarized"
+        base = default_set(is_of_paper(representation))
     if not isinstance(algorithm, str):
         slots = algorithm["slots"]
     else:
         # Differential evolution makes its children itself.
-        slots = list(SLOTS) if CAPABILITIES[algorithm].takes_operators or given["base"] != "default" else ["sampling", "repair"]
-    names: dict[str, str] = dict(_PATH)
-    named = isinstance(representation, str)
-    if base == "random":
-        names["sampling"] = "ReachableSampling"
-    elif base == "paper":
-        # Of a coding of one's own, the problem decides.
-        names = {**_PAPER, "crossover": _PAPER_CROSSOVERS.get(representation, "DiscreteSBX")} if named else {}
+        whole = planner_of(algorithm) is not None or CAPABILITIES[algorithm].takes_operators
+        slots = list(SLOTS) if whole or given["base"] != "default" else ["sampling", "repair"]
+    if base != "paper":
+        classes = path_classes(base)
+    elif isinstance(representation, str):
+        # All have their defaults, but for the rate of the mutation: the problem decides.
+        classes = {
+            slot: cls for slot, cls in paper_classes(of_package(Representation)[representation]).items() if slot != "mutation"
+        }
+    else:
+        # Of a coding of one's own, the problem decides on all.
+        classes = {}
+    names = {slot: cls.__name__ for slot, cls in classes.items()}
     found: dict[str, Any] = {slot: dict(default_operator(names[slot], slot)) if slot in names else "paper" for slot in slots}
     return found | {slot: dict(value) for slot, value in given.items() if slot != "base"}

@@ -9,7 +9,7 @@ from typing import Any
 from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
-from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.planning.build import build_algorithm, build_planner, build_problem, build_termination
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, Task, has_own_budget, needed_for
 
 # Share of the time of a measurement that getting ready for it may take: compiled functions are loaded in the first one.
@@ -97,7 +97,7 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     begin = working_seconds()
     problem = build_problem(task.problem, task.grid)
     if has_own_budget(task.algorithm):
-        return _measure_exact(task.algorithm, problem, max_seconds)
+        return _measure_planner(task.algorithm, problem, max_seconds)
     assert task.budget is not None
     algorithm: Any = build_algorithm(task.algorithm, problem)
     algorithm.setup(problem, termination=build_termination(task.budget, algorithm), seed=task.seed)
@@ -115,14 +115,13 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     return last + rate * max(wanted - last_done, 0), False
 
 
-def _measure_exact(algorithm: Mapping[str, Any], problem, max_seconds: float) -> tuple[float, bool]:
+def _measure_planner(algorithm: Mapping[str, Any], problem, max_seconds: float) -> tuple[float, bool]:
     begin = working_seconds()
-    own = algorithm.get("max_seconds")
-    if "max_seconds" in algorithm:
-        algorithm = {**algorithm, "max_seconds": max_seconds if own is None else min(own, max_seconds)}
-    search: Any = build_algorithm(algorithm, problem)
-    search.setup(problem)
+    search, bounded = build_planner(algorithm, problem, max_seconds=max_seconds)
+    search.setup(problem, seed=1)
     search.next()
     took = working_seconds() - begin
-    ended = search.success or "max_seconds" not in algorithm or algorithm.get("max_labels") is not None
-    return (took, False) if ended else (max(took, own or 0.0), True)
+    given = {**algorithm, **algorithm.get("parameters", {})}
+    if search.success or not bounded or given.get("max_labels") is not None:
+        return took, False
+    return max(took, given.get("max_seconds") or 0.0), True

@@ -89,6 +89,12 @@ def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> Plan
         content = {"algorithm": spec.algorithm, **budget}
         if reference is not None and reference["algorithm"] == spec.algorithm and set(budget.values()) == {None}:
             content = dict(reference)
+        if planner.takes_pop_size:
+            content["pop_size"] = spec.pop_size or DEFAULT_POP_SIZE
+        if planner.takes_operators:
+            content["operators"] = _operators(spec.operators)
+        if spec.parameters:
+            content["parameters"] = spec.parameters
     elif own.is_path(spec.algorithm):
         entry = algorithm_entry(spec.algorithm)
         content = {"algorithm": entry, "parameters": spec.parameters}

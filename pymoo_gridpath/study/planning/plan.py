@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
-from pymoo_gridpath.algorithms import find_algorithm
+from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.memory import needed
 from pymoo_gridpath.study.planning.canonical import n_cells, resolve
 from pymoo_gridpath.study.planning.stored import check_plan
@@ -186,7 +186,8 @@ class Plan:
 
 def has_own_budget(algorithm: Mapping[str, Any]) -> bool:
     """Whether a canonical algorithm is a planner, which ends by itself or a budget of its own, and not by the study's."""
-    return planner_of(algorithm.get("algorithm")) is not None
+    content = algorithm.get("algorithm")
+    return content.get("planner", False) if isinstance(content, Mapping) else planner_of(content) is not None
 
 
 def is_deterministic(algorithm: Mapping[str, Any]) -> bool:
@@ -203,7 +204,10 @@ def _says(algorithm: Mapping[str, Any], flag: str) -> bool:
     content = algorithm.get("algorithm")
     if content is None:
         return False
-    return getattr(find_algorithm(content), flag) if isinstance(content, str) else content[flag]
+    if isinstance(content, Mapping):
+        return content[flag]
+    # Not by what is registered, which may import what a stored plan names.
+    return getattr(planner_of(content) or CAPABILITIES[content], flag)
 
 
 def run_key(problem: Mapping[str, Any], algorithm: Mapping[str, Any], budget: Mapping[str, int] | None, seed: int) -> str:

@@ -7,14 +7,16 @@ from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
-from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
+from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.objectives import Objective
+from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import Planner, reference_planner
+from pymoo_gridpath.planners.signature import key_of
 from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec
-from pymoo_gridpath.study.specification.kinds import SLOTS, is_monotone, objective_name, of_package
+from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name, of_package
 from pymoo_gridpath.study.specification.operators import planner_of
 from pymoo_gridpath.study.specification.problem import ProblemSpec, RandomFamily
 from pymoo_gridpath.study.specification.study import Study
@@ -142,7 +144,10 @@ def _own_representation(given: Any, where: Where) -> Any:
 def _own_algorithm(spec: dict[str, Any], where: Where) -> dict[str, Any]:
     """Return what stands in for an algorithm that is not of this package or pymoo, once that has been checked."""
     place = (*where, "algorithm")
-    own.check_entry(spec["algorithm"], "algorithm", place, deterministic=bool, reference=bool, pop_size=bool, slots=list)
+    facts: dict[str, type] = {"deterministic": bool, "reference": bool, "pop_size": bool, "slots": list}
+    if isinstance(spec["algorithm"], Mapping) and "planner" in spec["algorithm"]:
+        facts["planner"] = bool
+    own.check_entry(spec["algorithm"], "algorithm", place, **facts)
     takes = {"pop_size": spec["algorithm"]["pop_size"], "operators": spec["algorithm"]["slots"]}
     spec = _table(spec, ("algorithm", "parameters", *(key for key in takes if takes[key])), where, "the algorithm")
     values.table(spec["parameters"], (*where, "parameters"))
@@ -176,20 +181,12 @@ def _check_grid(value: Any, where: Where) -> tuple[int, int]:
     return values.whole(grid["width"], (*where, "width"), 1), values.whole(grid["height"], (*where, "height"), 1)
 
 
-def _planner(value: Any, where: Where) -> dict[str, Any]:
+def _planner(value: Any, where: Where, *further: str) -> dict[str, Any]:
     """Return the table of a planner."""
-    table = _table(value, ("algorithm",), where, "the planner", ("max_seconds", "max_labels"))
-    if _planner_of(table["algorithm"]) is None:
+    table = _table(value, ("algorithm",), where, "the planner", ("max_seconds", "max_labels", *further))
+    if planner_of(table["algorithm"]) is None:
         raise StudyError(f"algorithm is {values.show(table['algorithm'])}, expected a planner", (*where, "algorithm"))
     return table
-
-
-def _planner_of(name: object) -> type[Planner] | None:
-    """Return the planner of a name; None for other names, whether there is such an algorithm or not."""
-    try:
-        return planner_of(name)
-    except CapabilityError:
-        return None
 
 
 def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str, Any]:
@@ -198,13 +195,15 @@ def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str,
     spec = values.table(algorithm["spec"], place)
     if "preset" in spec:
         spec = _table(spec, ("preset", "pop_size"), place, "the preset")
-    elif _planner_of(spec.get("algorithm")) is not None:
-        spec = _planner(spec, place)
+    elif planner_of(spec.get("algorithm")) is not None:
+        spec = _planner(spec, place, "pop_size", "operators", "parameters")
     else:
         if isinstance(spec.get("algorithm"), Mapping):
             spec = _own_algorithm(spec, place)
         elif own.is_path(spec.get("algorithm")):
             raise StudyError(f"algorithm is {values.show(spec['algorithm'])}, expected what a plan says of it", place)
+        elif isinstance(spec.get("algorithm"), str):
+            _check_name(spec["algorithm"], (*place, "algorithm"))
         keys = ("algorithm", "pop_size", "smoothness", "operators", "parameters")
         spec = _table(spec, keys, place, "the algorithm")
         operators = _table(spec["operators"], ("base",), (*place, "operators"), "operators", tuple(SLOTS))
@@ -222,11 +221,19 @@ def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str,
     if "representation" in overrides:
         where_of = (*where, "overrides", "representation")
         overrides = {**overrides, "representation": _own_representation(overrides["representation"], where_of)}
-    made = _at(place, make_spec, AlgorithmSpec, {**spec, **overrides}, ())
-    if "algorithm" in spec and spec["algorithm"] != made.algorithm:
-        shown = values.show(spec["algorithm"])
-        raise StudyError(f"algorithm is {shown}, expected its full name, {made.algorithm}", (*place, "algorithm"))
+    _at(place, make_spec, AlgorithmSpec, {**spec, **overrides}, ())
     return algorithm
+
+
+def _check_name(name: str, where: Where) -> None:
+    """Refuse what is no full name of an algorithm of this package: to look further could import what a plan names."""
+    if name in CAPABILITIES:
+        return
+    for full in (*CAPABILITIES, *of_package(Planner)):
+        if key_of(full) == key_of(name):
+            raise StudyError(f"algorithm is {values.show(name)}, expected its full name, {full}", where)
+    known = [row.name for row in CAPABILITIES.values() if not row.unfit]
+    raise StudyError(f"there is no algorithm {values.show(name)}; {nearest(name, known)}", where)
 
 
 def _check_groups(problems: list[dict[str, Any]]) -> None:

@@ -336,3 +336,8 @@ def gist(message: str) -> str:
     """Return the line of a message that says most: the first, or of a traceback the last, which names the error."""
     lines = [line.strip() for line in message.splitlines() if line.strip()] or [""]
     return lines[-1] if lines[0].startswith("Traceback") else lines[0]
+
+
+def kind_of(front: ReferenceFront) -> str:
+    """Return what results are measured against, in a word: "exact", the whole truth, or "merged", the best of all runs."""
+    return "exact" if front.exact else "merged"

@@ -18,7 +18,7 @@ from pymoo.core.callback import Callback
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.problems.members import Members
-from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
+from pymoo_gridpath.study.planning.build import build_algorithm, build_planner, build_problem, build_termination
 from pymoo_gridpath.study.planning.plan import Task, needed_for
 from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
 from pymoo_gridpath.study.specification.kinds import objective_name
@@ -121,13 +121,14 @@ def _warm_up(task: Task, problem) -> None:
     if kind in _warm:
         return
     _warm.add(kind)
-    spec, termination = task.algorithm, None
-    if task.budget is None:
-        spec = {**spec, "max_labels": 100}
-    else:
-        termination = build_termination({"generations": 2})
     try:
-        _search(problem, build_algorithm(spec, problem), task.seed, termination, Recorder(problem.objective_names))
+        if task.budget is not None:
+            termination, algorithm = build_termination({"generations": 2}), build_algorithm(task.algorithm, problem)
+        else:
+            termination, (algorithm, short) = None, build_planner(task.algorithm, problem, max_labels=100)
+            if not short:
+                return
+        _search(problem, algorithm, task.seed, termination, Recorder(problem.objective_names))
     except Exception as error:  # the run itself will say so
         if is_ctrl_c(error):
             raise KeyboardInterrupt from error

@@ -7,11 +7,13 @@ from typing import Any, ClassVar
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.errors import StudyError
+from pymoo_gridpath.operators.sets import SLOTS
+from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.study.specification import operators as _operators
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
-from pymoo_gridpath.study.specification.kinds import ALGORITHM, operator_slots
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, operator_slots, takes_pop_size
 from pymoo_gridpath.study.specification.parameters import accepted_parameters, parameters
 
 PRESETS = ("ahmed-deb-2013",)
@@ -26,7 +28,7 @@ class AlgorithmSpec:
     algorithm : str or type, optional
         What `make_algorithm` takes; or an algorithm of your own: the path of its class,
         ``"package.module:Class"``, or the class. It is given those of ``pop_size`` and ``operators`` that its constructor
-        takes.
+        takes. One that is registered is known by its name.
     preset : {"ahmed-deb-2013"}, optional
         In place of ``algorithm``: the planner of the paper, see `ahmed_deb_2013`, with its penalty of 1; it keeps the
         representation of a problem if that is one of the paper's, and takes "integer" otherwise.
@@ -42,7 +44,7 @@ class AlgorithmSpec:
         `pymoo_gridpath.operators`, the path of a class, a mapping of ``class`` and its arguments, a class or an object;
         ``base`` says where the others come from.
     parameters : mapping, optional
-        Further arguments of the algorithm, such as ``n_neighbors``.
+        Further arguments of the algorithm or planner, such as ``n_neighbors``.
     max_seconds, max_labels : optional
         Budget of a planner that takes one; by default that of the study's reference if it is its planner.
     representation, obstacles, penalty, potential_limit, axis : optional
@@ -84,56 +86,67 @@ class AlgorithmSpec:
         check_problem_settings(self)
         if self.algorithm is not None:
             set_fields(self, algorithm=_operators.read_algorithm(self.algorithm, ("algorithm",)))
-        self._check_kind()
-        if own.is_path(self.algorithm):
-            takes = own.read(self.algorithm, ALGORITHM, ("algorithm",))
-            table = values.table({} if self.parameters is None else self.parameters, ("parameters",))
-            given = own.read({"class": self.algorithm, **table}, ALGORITHM, ("parameters",))
-            set_fields(self, parameters=given.arguments)
-            if operator_slots(takes.cls):
-                set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
-                self._check_slots(str(self.algorithm))
-        elif self.algorithm is not None and _operators.planner_of(self.algorithm) is None:
-            set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
-            self._check_slots(str(self.algorithm))
-            given = {} if self.parameters is None else self.parameters
-            set_fields(self, parameters=parameters(self.algorithm, given, ("parameters",)))
-
-    def _check_kind(self) -> None:
-        owner = "the preset" if self.preset else self.algorithm
-        takes: dict[str, tuple[str, ...]] = {"the preset": ("pop_size",)}
-        planner = _operators.planner_of(self.algorithm)
-        if planner is not None:
-            takes[str(owner)] = _operators.own_budget(planner)
-        if own.is_path(owner):
-            cls = own.read(owner, ALGORITHM, ("algorithm",)).cls
-            takes[str(owner)] = (
-                *["pop_size"] * ("pop_size" in own.parameters_of(cls)),
-                *["operators"] * bool(operator_slots(cls)),
-                "parameters",
-            )
-        known = takes.get(str(owner), ("pop_size", "smoothness", "operators", "parameters"))
+        takes = self._takes()
         for key in ("pop_size", "smoothness", "operators", "parameters", "max_seconds", "max_labels"):
             value = getattr(self, key)
             given = value is not None and not (isinstance(value, str) and value == "default")
-            if given and key not in known:
-                raise StudyError(f"{owner} takes no {key}, only {' and '.join(known) or 'a name'}", (key,))
+            if given and key not in takes:
+                owner = self.algorithm or "the preset"
+                raise StudyError(f"{owner} takes no {key}, only {' and '.join(takes) or 'a name'}", (key,))
+        if "operators" in takes:
+            set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
+            self._check_slots()
+        if "parameters" in takes:
+            found = parameters(str(self.algorithm), {} if self.parameters is None else self.parameters, ("parameters",))
+            set_fields(self, parameters=found)
+            self._gather_budget()
 
-    def _check_slots(self, algorithm: str) -> None:
+    def _takes(self) -> tuple[str, ...]:
+        """Return the keys that say how the algorithm works."""
+        if self.preset is not None:
+            return ("pop_size",)
+        planner = _operators.planner_of(self.algorithm)
+        if planner is None and not own.is_path(self.algorithm):
+            return ("pop_size", "smoothness", "operators", "parameters")
+        cls = planner or own.read(self.algorithm, ALGORITHM, ("algorithm",)).cls
+        return (
+            *(_operators.own_budget(cls) if issubclass(cls, Planner) else ()),
+            *["pop_size"] * takes_pop_size(cls),
+            *["operators"] * bool(operator_slots(cls)),
+            "parameters",
+        )
+
+    def _gather_budget(self) -> None:
+        """Put budgets of a planner that is none of this package among its other arguments."""
+        if not own.is_path(self.algorithm):
+            return
+        for key in ("max_seconds", "max_labels"):
+            value = getattr(self, key)
+            if value is None:
+                continue
+            if key in self.parameters:
+                raise StudyError(f"{key} stands among the parameters, too; expected it once", (key,))
+            found = parameters(str(self.algorithm), {**self.parameters, key: value}, ("parameters",))
+            set_fields(self, **{key: None, "parameters": found})
+
+    def _check_slots(self) -> None:
+        algorithm = str(self.algorithm)
         if own.is_path(algorithm):
-            cls = own.read(algorithm, ALGORITHM, ("algorithm",)).cls
-            accepted, whole = own.parameters_of(cls), "crossover" in operator_slots(cls)
+            slots = operator_slots(own.read(algorithm, ALGORITHM, ("algorithm",)).cls)
+            whole = bool({"crossover", "mutation"} & set(slots))
+        elif (planner := _operators.planner_of(algorithm)) is not None:
+            slots, whole = operator_slots(planner), True
         else:
-            accepted, whole = accepted_parameters(algorithm), CAPABILITIES[algorithm].takes_operators
+            slots, whole = list(accepted_parameters(algorithm)), CAPABILITIES[algorithm].takes_operators
         if not whole and self.operators["base"] != "default":
             raise StudyError(
-                f"{algorithm} makes children by differential evolution, so that there is no set of operators for it; "
+                f"{algorithm} makes children in a way of its own, so that there is no set of operators for it; "
                 f"expected sampling or repair alone, such as {{ sampling = 'ScalarizedSampling' }}",
                 ("operators",),
             )
         for slot in self.operators:
-            if slot != "base" and slot not in accepted:
-                takes = ", ".join(known for known in _operators.SLOTS if known in accepted)
+            if slot != "base" and slot not in slots:
+                takes = ", ".join(known for known in SLOTS if known in slots)
                 raise StudyError(f"{algorithm} takes no {slot}, only {takes}", ("operators", slot))
 
     @property

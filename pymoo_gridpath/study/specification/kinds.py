@@ -6,13 +6,12 @@ import functools
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
-from pymoo.core.crossover import Crossover
-from pymoo.core.duplicate import DuplicateElimination
-from pymoo.core.mutation import Mutation
-from pymoo.core.repair import Repair
-from pymoo.core.sampling import Sampling
 
+from pymoo_gridpath.algorithms import find_algorithm
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
+from pymoo_gridpath.operators.sets import SLOTS
+from pymoo_gridpath.planners import Planner
+from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.representations import REPRESENTATIONS, Representation
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.own import Kind
@@ -20,15 +19,6 @@ from pymoo_gridpath.study.specification.own import Kind
 OBJECTIVE = Kind("objective", Objective, OBJECTIVES)
 REPRESENTATION = Kind("representation", Representation, REPRESENTATIONS)
 ALGORITHM = Kind("algorithm", Algorithm, {})
-
-#: What `make_algorithm` takes as operators, and what each must be.
-SLOTS: dict[str, type] = {
-    "sampling": Sampling,
-    "crossover": Crossover,
-    "mutation": Mutation,
-    "repair": Repair,
-    "eliminate_duplicates": DuplicateElimination,
-}
 
 
 def objective_entry(form: Any) -> Any:
@@ -78,9 +68,16 @@ def of_package(base: Any) -> dict[str, Any]:
 
 
 def operator_slots(cls: type) -> list[str]:
-    """Return which operators the constructor of an algorithm takes."""
-    takes = own.parameters_of(cls)
+    """Return which operators an algorithm takes: its constructor one by one, a planner all together."""
+    if issubclass(cls, Planner):
+        return list(SLOTS) if cls.takes_operators else []
+    takes = parameters_of(cls)
     return [slot for slot in SLOTS if slot in takes]
+
+
+def takes_pop_size(cls: type) -> bool:
+    """Whether an algorithm takes a population size."""
+    return "pop_size" in parameters_of(cls) and find_algorithm(cls).takes_pop_size
 
 
 def algorithm_entry(path: str) -> dict[str, Any]:
@@ -92,4 +89,7 @@ def algorithm_entry(path: str) -> dict[str, Any]:
     given = own.read(path, ALGORITHM, ("algorithm",))
     says = getattr(given.cls, "capability", given.cls)
     facts = {flag: bool(getattr(says, flag, False)) for flag in ("deterministic", "reference")}
-    return own.entry(given, slots=operator_slots(given.cls), pop_size="pop_size" in own.parameters_of(given.cls), **facts)
+    if issubclass(given.cls, Planner):
+        # Of others it is not said, as their keys were made without.
+        facts["planner"] = True
+    return own.entry(given, slots=operator_slots(given.cls), pop_size=takes_pop_size(given.cls), **facts)

@@ -10,25 +10,17 @@ from typing import Any
 from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath import operators as _operators
-from pymoo_gridpath.algorithms import CAPABILITIES, find_algorithm
+from pymoo_gridpath.algorithms import Capability, find_algorithm
 from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
-from pymoo_gridpath.planners import PLANNERS, Planner
+from pymoo_gridpath.operators.sets import PATH_SAMPLINGS, SLOTS, path_classes
+from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.study.specification import own, values
-from pymoo_gridpath.study.specification.kinds import ALGORITHM, SLOTS
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, of_package
 from pymoo_gridpath.study.specification.own import Kind
 from pymoo_gridpath.study.specification.values import Where
 
-BASES = ("default", "paper", "scalarized", "random")
-
-# An example of each, for messages.
-_EXAMPLES: dict[str, str] = {
-    "sampling": "ScalarizedSampling",
-    "crossover": "SpliceCrossover",
-    "mutation": "PathMutation",
-    "repair": "PathRepair",
-    "eliminate_duplicates": "RowDuplicates",
-}
+BASES = ("default", "paper", *PATH_SAMPLINGS)
 
 
 def read_algorithm(value: Any, where: Where) -> str:
@@ -48,27 +40,30 @@ def read_algorithm(value: Any, where: Where) -> str:
     if not isinstance(value, type) and not own.is_path(value):
         return algorithm_name(values.text(value, where), where)
     given = own.read(value, ALGORITHM, where)
-    for name in PLANNERS:
-        if PLANNERS[name] is given.cls:
-            return name
-    row = CAPABILITIES.get(given.cls.__name__)
-    return algorithm_name(row.name, where) if row is not None and class_of(row) is given.cls else given.name
+    row = find_algorithm(given.cls)
+    if isinstance(row, type):
+        return next((name for name, planner in of_package(Planner).items() if planner is row), given.name)
+    return algorithm_name(row.name, where) if row.cls is None else given.name
 
 
 def algorithm_name(name: str, where: Where) -> str:
-    """Return an algorithm's name as the capability table writes it, or a planner's.
+    """Return an algorithm's name as the capability table writes it, or a planner's; of one that others registered, its path.
 
     Raises
     ------
     StudyError
-        If there is no such algorithm, or no grid problem suits it, or a package that it needs is missing.
+        If there is no such algorithm, no grid problem suits it, a package that it needs is missing, or no other process can
+        import its class.
     """
     try:
         row = find_algorithm(name)
     except CapabilityError as error:
         raise StudyError(str(error), where) from None
-    if isinstance(row, type):
-        return next(known for known in PLANNERS if PLANNERS[known] is row)
+    cls = row if isinstance(row, type) else row.cls
+    if cls is not None:
+        # By its class, since what one process has registered is unknown to others.
+        return read_algorithm(cls, where)
+    assert isinstance(row, Capability)
     if row.unfit:
         raise StudyError(f"{row.name} {row.unfit}", where)
     if row.needs == "automated_dm":
@@ -81,9 +76,8 @@ def algorithm_name(name: str, where: Where) -> str:
 
 
 def planner_of(algorithm: object) -> type[Planner] | None:
-    """Return the class of a planner by its name; None for all else that a study calls an algorithm."""
-    spec = find_algorithm(algorithm) if isinstance(algorithm, str) and not own.is_path(algorithm) else None
-    return spec if isinstance(spec, type) else None
+    """Return the class of a planner of this package by its name; None for all else that a study calls an algorithm."""
+    return of_package(Planner).get(algorithm) if isinstance(algorithm, str) else None
 
 
 def own_budget(planner: type[Planner]) -> tuple[str, ...]:
@@ -131,7 +125,7 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
         given = {"class": found.name, **found.arguments}
     table = {"class": given} if isinstance(given, str) else values.table(given, where)
     if "class" not in table:
-        raise StudyError(f"{slot} has no class, expected such as {{ class = {_EXAMPLES[slot]!r} }}", where)
+        raise StudyError(f"{slot} has no class, expected such as {{ class = {path_classes()[slot].__name__!r} }}", where)
     classes = operator_classes(slot)
     name = values.choice(table.pop("class"), classes, where)
     arguments = _own_arguments(classes[name])

@@ -21,6 +21,7 @@ import numpy as np
 from pymoo.core.variable import Variable
 
 from pymoo_gridpath.errors import GridPathError, StudyError, nearest
+from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.values import Where
 
@@ -250,21 +251,6 @@ def _check_class(cls: type, kind: Kind, where: Where) -> None:
         )
 
 
-def parameters_of(cls: type) -> dict[str, inspect.Parameter]:
-    """Return the arguments that the constructor of a class lists, through ``**kwargs`` up to its bases."""
-    found: dict[str, inspect.Parameter] = {}
-    for base in cls.__mro__:
-        if "__init__" not in vars(base) or base is object:
-            continue
-        listed = list(inspect.signature(vars(base)["__init__"]).parameters.values())[1:]
-        for item in listed:
-            if item.kind in (item.POSITIONAL_OR_KEYWORD, item.KEYWORD_ONLY):
-                found.setdefault(item.name, item)
-        if not any(item.kind is item.VAR_KEYWORD for item in listed):
-            break
-    return found
-
-
 def _arguments(cls: type, name: str, given: Mapping[str, Any], where: Where) -> dict[str, Any]:
     """Return arguments that a class takes, in one form, without those at the defaults of a class of this package."""
     takes = parameters_of(cls)
@@ -273,8 +259,8 @@ def _arguments(cls: type, name: str, given: Mapping[str, Any], where: Where) -> 
         if key not in takes:
             hint = nearest(key, takes, "it takes") if takes else "it takes none"
             raise StudyError(f"{name} takes no argument {values.show(key)}; {hint}", (*where, key))
-        value = values.like(takes[key].default, values.plain_json(value, (*where, key)))
-        if is_path(name) or value != takes[key].default:
+        value = values.like(takes[key], values.plain_json(value, (*where, key)))
+        if is_path(name) or value != takes[key]:
             found[key] = value
     return found
 
@@ -290,7 +276,7 @@ def _arguments_of(thing: Any, kind: Kind, where: Where) -> dict[str, Any]:
         plain = cls(**found)
         for key, value in held.items():
             if key not in found and value != _held(plain, key):
-                found[key] = values.like(parameters_of(cls)[key].default, values.plain_json(value, where))
+                found[key] = values.like(parameters_of(cls)[key], values.plain_json(value, where))
         same = _alike(cls(**found), thing, 0)
     except Exception:
         same = False

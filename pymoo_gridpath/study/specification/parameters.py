@@ -8,7 +8,11 @@ from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms import arguments as _arguments
 from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import StudyError, nearest
-from pymoo_gridpath.study.specification import values
+from pymoo_gridpath.operators.sets import SLOTS
+from pymoo_gridpath.planners.signature import parameters_of
+from pymoo_gridpath.study.specification import own, values
+from pymoo_gridpath.study.specification.kinds import ALGORITHM
+from pymoo_gridpath.study.specification.operators import planner_of
 from pymoo_gridpath.study.specification.values import MAX_POP_SIZE, Where
 
 # Arguments of pymoo's algorithms that are not for a study file to set.
@@ -17,10 +21,11 @@ _ELSEWHERE = {
     "termination": "the budget of the study",
     "pop_size": "the key pop_size of the algorithm",
     "smoothness": "the key smoothness of the algorithm",
-    **dict.fromkeys(
-        ("sampling", "crossover", "mutation", "repair", "eliminate_duplicates"), "the key operators of the algorithm"
-    ),
+    **dict.fromkeys(SLOTS, "the key operators of the algorithm"),
 }
+# Those of planners.
+_BUDGETS = ("max_seconds", "max_labels")
+_NOT_HERE = "not among its parameters"
 _NO_EFFECT = ("return_least_infeasible", "save_history", "verbose", "save_ps")
 _OBJECTS = (
     "selection",
@@ -33,6 +38,7 @@ _OBJECTS = (
     "decomposition",
     "automated_dm",
     "ps",
+    "watch",
 )
 
 
@@ -44,14 +50,17 @@ def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
     StudyError
         If it takes no such argument, a study cannot set it, or the value is of another type than the default or means nothing.
     """
+    given = values.table(given, where)
     accepted = accepted_parameters(algorithm)
-    free = [key for key in accepted if key not in (*_ELSEWHERE, *_NO_EFFECT, *_OBJECTS)]
+    if own.is_path(algorithm):
+        return _own_parameters(algorithm, given, accepted, where)
+    free = [key for key in accepted if key not in (*_ELSEWHERE, *_BUDGETS, *_NO_EFFECT, *_OBJECTS)]
     found = {}
-    for key, value in values.table(given, where).items():
+    for key, value in given.items():
         place = (*where, key)
         values.refuse_key_of_study(key, place, "the parameters of an algorithm")
-        if key in _ELSEWHERE:
-            raise StudyError(f"{key} is set by {_ELSEWHERE[key]}, not among its parameters", place)
+        if key in _ELSEWHERE or (key in _BUDGETS and key in accepted):
+            raise StudyError(f"{key} is set by {_ELSEWHERE.get(key, f'the key {key} of the algorithm')}, {_NOT_HERE}", place)
         if key in accepted and key in (*_NO_EFFECT, *_OBJECTS):
             why = "is an object of Python, which" if key in _OBJECTS else "changes no result, so that"
             raise StudyError(f"{key} {why} a study does not set; {algorithm} takes {', '.join(free) or 'nothing else'}", place)
@@ -66,9 +75,26 @@ def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
 
 
 def accepted_parameters(algorithm: str) -> dict[str, Any]:
-    """Return what the class of an algorithm takes, with the defaults."""
+    """Return what the class of an algorithm or planner takes, with the defaults."""
+    if own.is_path(algorithm):
+        return parameters_of(own.read(algorithm, ALGORITHM, ("algorithm",)).cls)
+    planner = planner_of(algorithm)
+    if planner is not None:
+        return planner.parameters()
     row = CAPABILITIES[algorithm]
     return _arguments.parameters(class_of(row), row.name)
+
+
+def _own_parameters(algorithm: str, given: dict[str, Any], accepted: dict[str, Any], where: Where) -> dict[str, Any]:
+    """Return arguments of an algorithm of others, who check the values of what they list themselves."""
+    theirs = _arguments.own_parameters(own.read(algorithm, ALGORITHM, ("algorithm",)).cls)
+    for key in given:
+        if key in accepted and key in _ELSEWHERE and key != "smoothness":
+            raise StudyError(f"{key} is set by {_ELSEWHERE[key]}, {_NOT_HERE}", (*where, key))
+        if key in accepted and key in (*_NO_EFFECT, *_OBJECTS) and key not in theirs:
+            why = "is an object of Python, which" if key in _OBJECTS else "changes no result, so that"
+            raise StudyError(f"{key} {why} a study does not set", (*where, key))
+    return own.read({"class": algorithm, **given}, ALGORITHM, where).arguments
 
 
 def _check(key: str, value: Any, default: Any, where: Where) -> None:
@@ -85,6 +111,8 @@ def _check(key: str, value: Any, default: Any, where: Where) -> None:
         values.flag(value, where)
     elif isinstance(default, int):
         values.whole(value, where, 1)
+    elif isinstance(default, str):
+        values.text(value, where)
     else:
         values.real(value, where)
 

@@ -272,7 +272,7 @@ BAD = [
     (ALGORITHM, 'algorithm = "MOEAD"\noperators = { eliminate_duplicates = "RowDuplicates" }', 9, "takes no elim"),
     (ALGORITHM, ALGORITHM + '\nrepresentation = "cells"\noperators = "paper"', 7, "names no operators"),
     (ALGORITHM, 'algorithm = "NSDE"\noperators = "scalarized"', 9, "expected sampling or repair alone, such as { sampling = "),
-    (ALGORITHM, 'algorithm = "NSDE"\noperators = { base = "random" }', 9, "NSDE makes children by differential evolution"),
+    (ALGORITHM, 'algorithm = "NSDE"\noperators = { base = "random" }', 9, "NSDE makes children in a way of its own"),
     (ALGORITHM, 'algorithm = "NSDE"\noperators.mutation = "PathMutation"', 9, "NSDE takes no mutation, only sampling, repair"),
     (ALGORITHM, ALGORITHM + '\nobstacles = "limit"', 9, "obstacles 'limit' needs potential_limit"),
     (

@@ -11,7 +11,7 @@ import numpy as np
 from pymoo_gridpath.study.planning.canonical import resolve
 from pymoo_gridpath.study.planning.plan import PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.page.blocks import Block, Fold, Heading, Listing, Text
-from pymoo_gridpath.study.report.results import Results
+from pymoo_gridpath.study.report.results import Results, kind_of
 from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.summary import reference_phrase
 from pymoo_gridpath.study.report.tables.table import NOTHING, Table, count, significant, spread
@@ -85,7 +85,7 @@ def _problems_table(results: Results) -> Table:
     rows = []
     for problem, reference in zip(results.plan.problems[:_MOST_ROWS], results.references, strict=False):
         spec, front = problem.spec, reference.front
-        rows.append([problem.label, _one_grid(problem), _query(spec), "exact" if front.exact else "merged", str(len(front))])
+        rows.append([problem.label, _one_grid(problem), _query(spec), kind_of(front), str(len(front))])
     header = ["problem", "grid", "query", "front", "front points"]
     left = len(results.plan.problems) - len(rows)
     notes = [f"{left} more stand in problems.csv."] if left else []

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.study.planning.plan import PlannedProblem
-from pymoo_gridpath.study.report.results import Results, gist
+from pymoo_gridpath.study.report.results import Results, gist, kind_of
 from pymoo_gridpath.study.report.statistics.comparisons import Comparison, could_tell
 from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.summary import n_reached
@@ -65,7 +65,7 @@ def _runs(results: Results, measures: list[str]) -> tuple[list[str], Iterator[li
             feasible = _truth(run.feasible) if run.finished else None
             complete = _truth(run.complete) if run.finished else None
             names = [problem.group, problem.label, results.algorithms[run.algorithm], run.seed, run.key]
-            kind = "exact" if front.exact else "merged"
+            kind = kind_of(front)
             values = [getattr(run, number) for number in numbers]
             yield [*names, run.status, feasible, kind, len(front), *values, complete, gist(run.message)]
 
@@ -81,7 +81,7 @@ def _problems(results: Results, times: bool) -> tuple[list[str], Iterator[list]]
 
     def rows() -> Iterator[list]:
         for problem, reference in zip(results.plan.problems, results.references, strict=True):
-            kind = "exact" if reference.front.exact else "merged"
+            kind = kind_of(reference.front)
             spec = problem.spec
             row = [problem.group, problem.label, *_grid(problem)]
             row += [" ".join(map(str, spec[key])) for key in ("start", "goal")]
@@ -109,8 +109,8 @@ def _summary(results: Results, measures: list[str]) -> tuple[list[str], Iterator
         scopes += [("group", group, None, problems) for group, problems in results.groups.items()]
         scopes.append(("study", None, None, list(range(len(plan.problems)))))
         for level, group, problem, problems in scopes:
-            exact = sum(results.references[k].front.exact for k in problems)
-            kind = "exact" if exact == len(problems) else "merged" if not exact else "mixed"
+            kinds = {kind_of(results.references[k].front) for k in problems}
+            kind = kinds.pop() if len(kinds) == 1 else "mixed"
             for k, label in enumerate(results.algorithms):
                 planned, finished = results.planned(k, problems), results.finished(k, problems)
                 failed = sum(run.status == "failed" for run in planned)
