@@ -142,6 +142,11 @@ def check_whole(owner: str, name: str, value: Any, least: int = 1, most: int | N
     return checks.whole(name, value, least, most, expected=f"a whole number of {room} for {owner}", error=CapabilityError)
 
 
+def check_pop_size(owner: str, value: Any, least: int = 1) -> int:
+    """Return the size of a population if it is a whole number in its range."""
+    return check_whole(owner, "pop_size", value, least, MOST)
+
+
 def rows(name: str, value: Any, n_obj: int | None = None) -> np.ndarray:
     """Return points or directions, a row each, as an array of floats.
 

@@ -150,7 +150,7 @@ def build(
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
     if pop_size is not None and not row.takes_pop_size:
         raise CapabilityError(f"{row.name} takes no argument 'pop_size'")
-    pop_size = _arguments.check_whole(row.name, "pop_size", DEFAULT_POP_SIZE if pop_size is None else pop_size)
+    pop_size = _arguments.check_pop_size(row.name, DEFAULT_POP_SIZE if pop_size is None else pop_size)
     cls = class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     given = dict(kwargs)
@@ -164,8 +164,7 @@ def build(
     refuse_unknown(row.name, given, (*accepted, *["pop_size"] * row.takes_pop_size, "smoothness", "operators"))
     unchecked = {"smoothness", *_arguments.own_parameters(cls)}
     _arguments.check_values(row.name, {key: value for key, value in given.items() if key not in unchecked}, accepted)
-    _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(accepted, kwargs))
-    _arguments.check_whole(row.name, "pop_size", pop_size, most=_arguments.MOST)
+    _arguments.check_pop_size(row.name, pop_size, _least_pop_size(accepted, kwargs))
     settings = _arguments.fresh_defaults(accepted)
     if isinstance(problem, GridPathProblem) and "output" in accepted:
         settings["output"] = PathOutput()

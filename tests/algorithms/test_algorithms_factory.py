@@ -72,7 +72,7 @@ def test_unknown_name(name, near, make_problem):
         ("NSGA2", {"progress_bar": True}, "NSGA2 takes no argument 'progress_bar'"),
         ("NSGA2", {"operators": {"cross": None}}, "operators takes no argument 'cross'; did you mean 'crossover'"),
         ("NSGA2", {"pop_size": 0}, "pop_size is 0"),
-        ("NSGA2", {"pop_size": 2.5}, "pop_size is 2.5, expected a whole number of at least 1 for NSGA2"),
+        ("NSGA2", {"pop_size": 2.5}, "pop_size is 2.5, expected a whole number of at least 1 and at most 100,000 for NSGA2"),
         ("SPEA2", {"pop_size": "20"}, "pop_size is '20', expected a whole number"),
         ("NSGA2", {"n_offsprings": 0}, "n_offsprings is 0, expected a whole number of at least 1"),
         ("MOEAD", {"popsize": 3}, "did you mean 'pop_size'"),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms.arguments import check_pop_size
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.objectives import Objective
@@ -221,7 +222,7 @@ def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str,
         kept = {slot: one for slot, one in operators.items() if slot == "base" or not own.is_path(one.get("class"))}
         spec["operators"] = kept
         values.table(spec["parameters"], (*place, "parameters"))
-        values.whole(spec["pop_size"], (*place, "pop_size"), 2, values.MAX_POP_SIZE)
+        values.told((*place, "pop_size"), check_pop_size, "an algorithm", spec["pop_size"])
     overrides = _table(algorithm["overrides"], (), (*where, "overrides"), "overrides", _OVERRIDES)
     for key, value in overrides.items():
         if value is None:

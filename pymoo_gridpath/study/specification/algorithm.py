@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms.arguments import check_pop_size
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import OBSTACLES
@@ -78,7 +79,7 @@ class AlgorithmSpec:
             raise StudyError("the algorithm has no key algorithm and no preset, or both; expected one of them")
         set_given(self, "name", check=values.text)
         set_given(self, "preset", check=lambda value, where: values.choice(value, PRESETS, where))
-        set_given(self, "pop_size", check=lambda value, where: values.whole(value, where, 2, values.MAX_POP_SIZE))
+        set_given(self, "pop_size", check=lambda value, where: values.told(where, check_pop_size, "an algorithm", value))
         set_given(self, "max_labels", check=lambda value, where: values.whole(value, where, 1))
         set_given(self, "smoothness", check=values.flag)
         set_given(self, "max_seconds", check=values.real)

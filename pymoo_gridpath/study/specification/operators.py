@@ -11,7 +11,7 @@ from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath.algorithms import Capability, find_algorithm
 from pymoo_gridpath.algorithms.known import class_of
-from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
+from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.operators.known import BASES, find_operator
 from pymoo_gridpath.operators.sets import PATH_SAMPLINGS
 from pymoo_gridpath.planners import Planner
@@ -57,10 +57,7 @@ def algorithm_name(name: str, where: Where) -> str:
         If there is no such algorithm, no grid problem suits it, a package that it needs is missing, or no other process can
         import its class.
     """
-    try:
-        row = find_algorithm(name)
-    except CapabilityError as error:
-        raise StudyError(str(error), where) from None
+    row = values.told(where, find_algorithm, name)
     cls = row if isinstance(row, type) else row.cls
     if cls is not None:
         # By its class, since what one process has registered is unknown to others.
@@ -70,10 +67,7 @@ def algorithm_name(name: str, where: Where) -> str:
         raise StudyError(f"{row.name} {row.unfit}", where)
     if row.needs == "automated_dm":
         raise StudyError(f"{row.name} asks a decision maker during the run, whom a study cannot describe", where)
-    try:
-        class_of(row)
-    except CapabilityError as error:
-        raise StudyError(str(error), where) from None
+    values.told(where, class_of, row)
     return row.name
 
 
@@ -117,10 +111,7 @@ def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
         raise StudyError(f"{slot} has no class, expected such as {{ class = {example!r} }}", where)
     named = table["class"]
     if isinstance(named, str) and not own.is_path(named):
-        try:
-            cls = find_operator(slot, named)
-        except CapabilityError as error:
-            raise StudyError(str(error), where) from None
+        cls = values.told(where, find_operator, slot, named)
         if own.is_of_package(cls):
             return _operator_of_package(slot, named, cls, table, where)
         # By its class, since what one process has registered is unknown to others.
@@ -136,16 +127,10 @@ def _operator_of_package(slot: str, name: str, cls: type, table: dict[str, Any],
     """Return an operator of this package with all of its arguments."""
     given = {key: value for key, value in table.items() if key != "class"}
     arguments = _own_arguments(cls)
-    for key, value in given.items():
+    for key in given:
         if key not in arguments:
             hint = nearest(key, arguments, "it takes") if arguments else "it takes none"
             raise StudyError(f"{name} takes no argument {values.show(key)}; {hint}", (*where, key))
-        # A plan says none where that is the default.
-        by_default = value is None and arguments[key] is None
-        if isinstance(arguments[key], bool):
-            values.flag(value, (*where, key))
-        elif isinstance(arguments[key], int | float) or (key == "prob_var" and not by_default):
-            values.number(value, (*where, key))
     for key, item in inspect.signature(cls).parameters.items():
         if key in arguments and item.default is item.empty and key not in given:
             raise StudyError(f"{name} has no {key}, expected such as {{ class = {name!r}, {key} = 2 }}", where)

@@ -7,7 +7,7 @@ from typing import Any
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms import arguments as _arguments
 from pymoo_gridpath.algorithms.known import class_of
-from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
+from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.registry import SLOTS
 from pymoo_gridpath.study.specification import own, values
@@ -67,10 +67,7 @@ def parameters(algorithm: str, given: Any, where: Where) -> dict[str, Any]:
             raise StudyError(f"{algorithm} takes no parameter {values.show(key)}; {hint}", place)
         value = values.like(accepted[key], values.plain_json(value, place))
         if value != accepted[key] or isinstance(value, bool) is not isinstance(accepted[key], bool):
-            try:
-                _arguments.check_values(algorithm, {key: value}, accepted)
-            except CapabilityError as error:
-                raise StudyError(str(error), place) from None
+            values.told(place, _arguments.check_values, algorithm, {key: value}, accepted)
             found[key] = value
     return found
 

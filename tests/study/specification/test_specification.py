@@ -251,7 +251,7 @@ BAD = [
         ALGORITHM,
         ALGORITHM + '\noperators.survival = { class = "RankAndSmoothness", distinct = 1 }',
         9,
-        "distinct is 1, expected true",
+        "distinct is 1, exp",
     ),
     (ALGORITHM, ALGORITHM + "\nparameters.verbose = true", 9, "changes no result"),
     (ALGORITHM, ALGORITHM + '\noperators = "papr"', 9, "did you mean 'paper'?"),
@@ -291,7 +291,7 @@ BAD = [
         ALGORITHM,
         ALGORITHM + '\noperators.crossover = { class = "DiscreteSBX", prob = true }',
         9,
-        "prob is true, expected",
+        "prob is True, expected",
     ),
     (
         ALGORITHM,
@@ -300,8 +300,8 @@ BAD = [
         "prob_var is [1], exp",
     ),
     (ALGORITHM, ALGORITHM + '\noperators.crossover = "PointCrossover"', 9, "PointCrossover has no n_points, expected such as"),
-    ("pop_size = 8", "pop_size = 1", 9, "pop_size is 1, expected a whole number, 2 to 100000"),
-    ("pop_size = 8", "pop_size = 10_000_000", 9, "pop_size is 10000000, expected a whole number, 2 to 100000"),
+    ("pop_size = 8", "pop_size = 0", 9, "pop_size is 0, expected a whole number of at least 1 and at most 100,000"),
+    ("pop_size = 8", "pop_size = 10_000_000", 9, "pop_size is 10000000, expected a whole number of at least 1 and at"),
     (
         "pop_size = 8",
         "seeds = 5",
