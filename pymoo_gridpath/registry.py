@@ -9,7 +9,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
 
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import GridPathError, nearest
+from pymoo_gridpath.errors import CapabilityError, GridPathError, nearest
 
 T = TypeVar("T")
 C = TypeVar("C", bound=type)
@@ -24,8 +24,9 @@ class Registry(Generic[T]):
         What messages call one of them, such as "objective".
     group : str
         Entry points of this group are known by their names, too; they are loaded when asked for.
-    base : type
-        What the classes inherit from.
+    *bases : type or str
+        What the classes inherit from, one of these. A base may be its import path: whoever derives from it has imported it,
+        and nobody else need wait for it.
     error : type of GridPathError, optional
         What is raised where a name is unknown.
     key : callable, optional
@@ -52,11 +53,12 @@ class Registry(Generic[T]):
         self,
         kind: str,
         group: str,
-        base: type,
+        *bases: type | str,
         error: type[GridPathError] = GridPathError,
         key: Callable[[str], str] = str,
     ):
-        self.kind, self.group, self.base = kind, group, base
+        self.kind, self.group = kind, group
+        self._bases = [base if isinstance(base, str) else _path_of(base) for base in bases]
         self._error, self._key = error, key
         self._known: dict[str, T] = {}
         self._names: dict[str, str] = {}
@@ -69,7 +71,7 @@ class Registry(Generic[T]):
         Parameters
         ----------
         thing : type
-            A class that inherits from `base`.
+            A class that inherits from one of the bases.
         name : str, optional
             By default its attribute ``name``, or the name of the class.
 
@@ -78,10 +80,8 @@ class Registry(Generic[T]):
         GridPathError
             If it is no such class, has no name, or the name is taken by another one.
         """
-        if not (isinstance(thing, type) and issubclass(thing, self.base)):
-            raise GridPathError(
-                f"{shown(thing)} cannot be registered as {self.kind}, expected a class derived from {self.base.__name__}"
-            )
+        if self._distance(thing) is None:
+            raise GridPathError(f"{shown(thing)} cannot be registered as {self.kind}, expected {_derived_from(self._bases)}")
         name = _name_of(thing) if name is None else name
         if not (isinstance(name, str) and re.fullmatch(r"[\w./+-]+", name)):
             raise GridPathError(
@@ -123,13 +123,26 @@ class Registry(Generic[T]):
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
-    def values(self) -> Iterator[T]:
-        """Yield the classes in the order of their names; entry points that cannot be loaded are left out, with a warning."""
+    def registered(self) -> dict[str, T]:
+        """Return by name what is registered already; no entry point is loaded for it."""
+        return {name: self._known[key] for key, name in self._names.items()}
+
+    def items(self) -> Iterator[tuple[str, T]]:
+        """Yield the names with their classes; entry points that cannot be loaded are left out, with a warning."""
         for name in list(self):
             try:
-                yield self[name]
+                yield name, self[name]
             except GridPathError as error:
                 warnings.warn(str(error), stacklevel=2)
+
+    def values(self) -> Iterator[T]:
+        """Yield the classes as `items` does."""
+        return (thing for _, thing in self.items())
+
+    def _distance(self, thing: object) -> int | None:
+        """Return how far above a class the nearest of the bases is; None if it derives from none."""
+        above = [_path_of(cls) for cls in thing.__mro__] if isinstance(thing, type) else []
+        return min((above.index(base) for base in self._bases if base in above), default=None)
 
     @property
     def _installed(self) -> dict[str, EntryPoint]:
@@ -177,12 +190,18 @@ def register(cls: C) -> C:
     GridPathError
         If it inherits from none of these, has no name, or another class has that name.
     """
-    fitting = [one for one in _REGISTRIES if isinstance(cls, type) and issubclass(cls, one.base)]
+    fitting = {one: far for one in _REGISTRIES if (far := one._distance(cls)) is not None}
     if not fitting:
-        bases = ", ".join(one.base.__name__ for one in _REGISTRIES)
-        raise GridPathError(f"{shown(cls)} cannot be registered, expected a class derived from one of {bases}")
+        bases = [base for one in _REGISTRIES for base in one._bases]
+        raise GridPathError(f"{shown(cls)} cannot be registered, expected {_derived_from(bases)}")
     # The closest base: a planner is an algorithm as well.
-    return min(fitting, key=lambda one: cls.__mro__.index(one.base)).register(cls)
+    return min(fitting, key=lambda one: fitting[one]).register(cls)
+
+
+def key_of(name: object) -> str:
+    """Return what all spellings of the name of an algorithm have in common: "NSGA-II", "nsga2" and "Nsga_2" are one."""
+    key = re.sub(r"[^a-z0-9]", "", name.lower()) if isinstance(name, str) else ""
+    return re.sub(r"ii$", "2", re.sub(r"iii$", "3", key))
 
 
 def _name_of(thing: type) -> str:
@@ -193,3 +212,32 @@ def _name_of(thing: type) -> str:
 
 def _path_of(thing: Any) -> str:
     return f"{thing.__module__}.{thing.__qualname__}"
+
+
+def _derived_from(bases: list[str]) -> str:
+    names = [base.rpartition(".")[2] for base in bases]
+    return f"a class derived from {'one of ' * (len(names) > 1)}{', '.join(names)}"
+
+
+# What derives from pymoo's own classes: here, so that whoever registers one need not have imported its room before.
+
+#: The arguments of pymoo's algorithms that operators are for, each with the base class of the operators that fit.
+SLOTS: dict[str, str] = {
+    "sampling": "pymoo.core.sampling.Sampling",
+    "crossover": "pymoo.core.crossover.Crossover",
+    "mutation": "pymoo.core.mutation.Mutation",
+    "repair": "pymoo.core.repair.Repair",
+    "eliminate_duplicates": "pymoo.core.duplicate.DuplicateElimination",
+    "selection": "pymoo.core.selection.Selection",
+    "survival": "pymoo.core.survival.Survival",
+}
+
+#: Operators by name: those of this package, those that were registered, and those of installed packages. Which argument one is
+#: for follows from the class that it derives from.
+OPERATORS: Registry[type] = Registry("operator", "pymoo_gridpath.operators", *SLOTS.values(), error=CapabilityError)
+
+#: Algorithms of others: derived from pymoo's ``Algorithm``, no planners. What one can do is its class attribute ``capability``,
+#: a `Capability`, or else what the signature of its constructor says.
+ALGORITHMS: Registry[type] = Registry(
+    "algorithm", "pymoo_gridpath.algorithms", "pymoo.core.algorithm.Algorithm", error=CapabilityError, key=key_of
+)

@@ -111,3 +111,9 @@ def test_no_leaf_folder_over_a_sixth_of_the_house():
         folder: n for folder, n in lines.items() if not any(other != folder and folder in other.parents for other in lines)
     }
     assert max(leaves.values()) <= sum(lines.values()) / 6, max(leaves, key=lambda folder: leaves[folder])
+
+
+@pytest.mark.parametrize("name", sorted(name for name, path in MODULES.items() if path.name == "__init__.py"))
+def test_the_file_of_a_package_gathers_names_and_defines_none(name):
+    kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
+    assert [node.lineno for node in ast.walk(ast.parse(MODULES[name].read_text())) if isinstance(node, kinds)] == []

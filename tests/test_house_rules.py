@@ -15,7 +15,7 @@ from importlib.resources import files
 import pytest
 from test_house import MODULES
 
-from pymoo_gridpath.operators.sets import SLOTS
+from pymoo_gridpath.operators.sets import MEMBERS
 from pymoo_gridpath.planners import PLANNERS
 
 TREES = {name: ast.parse(path.read_text()) for name, path in MODULES.items() if name.split(".")[0] != "testing"}
@@ -89,7 +89,7 @@ def operator_sets(tree) -> Found:
     """Four operators or more that go together."""
     for node in nodes(tree, ast.Dict, ast.Tuple, ast.List, ast.Set):
         parts = node.keys if isinstance(node, ast.Dict) else node.elts
-        if sum(isinstance(part, ast.Constant) and part.value in SLOTS for part in parts) >= 4:
+        if sum(isinstance(part, ast.Constant) and part.value in MEMBERS for part in parts) >= 4:
             yield node
 
 
@@ -182,8 +182,8 @@ RULES = {
     radius_of_a_robot: {"grid"},
     # That of a problem, and that of the paper's planner.
     penalties: {"problems.grid_path", "algorithms.paper"},
-    # What a file says of a run, by where pymoo's algorithms hold it.
-    operator_sets: {"operators.sets", "decision.provenance"},
+    # What each derives from, by which it is registered; and what a file says of a run, by where pymoo's algorithms hold it.
+    operator_sets: {"operators.sets", "registry", "decision.provenance"},
     # Of the planner, and of the operators. Luminance is rounded by half of 1000.
     numbers_of_the_paper: {"algorithms.paper", "operators.parameters", "maps.image"},
     # Names of paths are written beside their ends, at angles.

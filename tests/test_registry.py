@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from importlib.metadata import EntryPoint
 
 import pytest
@@ -24,6 +26,14 @@ class Sphere(Circle):
 
 
 class Nameless(Shape):
+    pass
+
+
+class Solid:
+    pass
+
+
+class Cube(Solid, Shape):
     pass
 
 
@@ -72,9 +82,10 @@ def test_a_name_is_taken_once(shapes):
 
 @pytest.mark.parametrize("thing", [3, int, "circle", Circle()])
 def test_what_is_no_class_of_the_kind_is_refused(shapes, thing):
-    with pytest.raises(GridPathError, match="expected a class derived from"):
+    Registry("way", "ways", "no_such_module.Path")
+    with pytest.raises(GridPathError, match=r"cannot be registered as shape, expected a class derived from Shape$"):
         shapes.register(thing)
-    with pytest.raises(GridPathError, match="expected a class derived from one of Shape"):
+    with pytest.raises(GridPathError, match=r"cannot be registered, expected a class derived from one of Shape, Path$"):
         register(thing)
 
 
@@ -101,3 +112,48 @@ def test_entry_points_that_cannot_be_loaded_say_so_when_asked_for(shapes):
     with pytest.warns(UserWarning, match=r"gone|cannot be registered") as caught:
         assert list(shapes.values()) == [Nameless]
     assert sum(issubclass(one.category, UserWarning) for one in caught) == 2
+    with pytest.warns(UserWarning):
+        assert list(shapes.items()) == [("disc", Nameless)]
+
+
+def test_what_is_registered_needs_no_entry_point(shapes):
+    assert shapes.registered() == {}
+    shapes.register(Circle)
+    assert shapes.registered() == {"circle": Circle}
+
+
+def test_bases_may_be_several_and_import_paths(shapes):
+    """Of a class whose base no one has imported there is none, so that a path is enough to tell."""
+    things = Registry("thing", "things", Shape, f"{__name__}.Solid", "no_such_module.Base")
+    assert things.register(Cube) is Cube and things.register(Circle) is Circle
+    # The nearest of several bases counts, in whatever registry.
+    assert register(Cube) is Cube and "Cube" not in shapes
+    with pytest.raises(GridPathError, match=r"expected a class derived from one of Shape, Solid, Base$"):
+        things.register(int)
+
+
+FRESH = """
+import sys
+import pymoo_gridpath as gp
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.core.mutation import Mutation
+
+@gp.register
+class Mine(NSGA2):
+    pass
+
+@gp.register
+class Still(Mutation):
+    def _do(self, problem, X, **kwargs):
+        return X
+
+rooms = {name for name in sys.modules if name.startswith("pymoo_gridpath.")}
+assert rooms == {"pymoo_gridpath." + name for name in ("checks", "errors", "lazy", "registry")}, rooms
+problem = gp.GridPathProblem(gp.random_dense_grid(8, 0.1, 1), (0, 0), (7, 7), "integer")
+algorithm = gp.make_algorithm("mine", problem, operators={"mutation": "Still"})
+assert (type(algorithm), type(algorithm.mating.mutation)) == (Mine, Still)
+"""
+
+
+def test_classes_of_pymoo_are_known_whatever_was_imported():
+    subprocess.run([sys.executable, "-c", FRESH], check=True)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability, capability_table
 from pymoo_gridpath.algorithms.factory import make_algorithm, reference_directions
-from pymoo_gridpath.algorithms.known import ALGORITHMS, find_algorithm
+from pymoo_gridpath.algorithms.known import find_algorithm
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.algorithms.paper import Setup, ahmed_deb_2013
 from pymoo_gridpath.algorithms.runs import minimize_runs
 from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.algorithms.termination import FirstLegalPath
 from pymoo_gridpath.planners import ExactFront, PathOutput
+from pymoo_gridpath.registry import ALGORITHMS
 
 __all__ = [
     "ALGORITHMS",

@@ -29,16 +29,21 @@ from pymoo_gridpath.algorithms.rvea import FiniteAPDSurvival
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
+from pymoo_gridpath.operators.known import operator_of
 from pymoo_gridpath.operators.mating import mates_on_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
-from pymoo_gridpath.operators.sets import SLOTS
+from pymoo_gridpath.operators.sets import MEMBERS
 from pymoo_gridpath.operators.survival import ArrayRankAndCrowding
 from pymoo_gridpath.planners import PathOutput, Planner
 from pymoo_gridpath.planners.signature import parameters_of, refuse_missing, refuse_unknown
 from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.registry import SLOTS
 
 #: Members of a population unless told.
 DEFAULT_POP_SIZE = 100
+
+# Operators that an algorithm does without where it does not take them.
+_LEFT_OUT = ("repair", "eliminate_duplicates")
 
 
 def make_algorithm(
@@ -68,9 +73,10 @@ def make_algorithm(
         Whether ties are broken by total turn. By default they are where the algorithm can, unless turn is an objective of
         the problem or ``selection`` or ``survival`` is given.
     operators : mapping, optional
-        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``, such as `path_operators` returns;
-        each may be left out. By default those of `default_operators`: the paper's for its codings, and path-aware ones for
-        cell sequences. A repair or duplicate elimination that the algorithm does not take is left out.
+        ``sampling``, ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``, such as `path_operators` returns,
+        ``selection`` and ``survival``; each may be left out, and may be the name of one of `OPERATORS` in place of an object.
+        By default those of `default_operators`: the paper's for its codings, and path-aware ones for cell sequences. A repair
+        or duplicate elimination that the algorithm does not take is left out.
     **kwargs
         Other arguments of the algorithm: what its pymoo class takes and heeds, such as ``ref_dirs``, ``n_neighbors``,
         ``termination``, ``seed`` or ``output``, by default a `PathOutput`, which ``verbose=True`` prints.
@@ -83,9 +89,9 @@ def make_algorithm(
     Raises
     ------
     CapabilityError
-        If there is no such algorithm; if it cannot solve this problem (number of objectives, constraints, discrete genes); if
-        it has no smoothness tie-break but one is asked for; if an argument is unknown, or needed and missing; or if a package
-        it needs is not installed.
+        If there is no such algorithm or operator; if it cannot solve this problem (number of objectives, constraints, discrete
+        genes); if it has no smoothness tie-break but one is asked for; if an argument is unknown, means nothing, or is needed
+        and missing; or if a package it needs is not installed.
 
     Examples
     --------
@@ -129,7 +135,8 @@ def _planner(cls: type[Planner], given: Mapping[str, Any]) -> Planner:
             accepted.pop(key, None)
     refuse_unknown(cls.__name__, given, accepted)
     refuse_missing(cls.__name__, given, accepted)
-    return cls(**given)
+    named = {"operators": _named(given["operators"])} if "operators" in given else {}
+    return cls(**{**given, **named})
 
 
 def build(
@@ -143,7 +150,7 @@ def build(
     """Return an algorithm without asking whether it can solve the problem; see `make_algorithm`."""
     if pop_size is not None and not row.takes_pop_size:
         raise CapabilityError(f"{row.name} takes no argument 'pop_size'")
-    pop_size = _arguments.check_whole(row.name, "pop_size", DEFAULT_POP_SIZE if pop_size is None else pop_size)
+    pop_size = _arguments.check_pop_size(row.name, DEFAULT_POP_SIZE if pop_size is None else pop_size)
     cls = class_of(row)
     accepted = _arguments.parameters(cls, row.name)
     given = dict(kwargs)
@@ -153,21 +160,18 @@ def build(
     elif smoothness is not None and "smoothness" in accepted:
         given["smoothness"], smoothness = smoothness, None
     if operators is not None:
-        if not isinstance(operators, Mapping):
-            raise CapabilityError(f"operators is {checks.shown(operators)}, expected a mapping such as path_operators returns")
-        refuse_unknown("operators", operators, SLOTS)
-        given.update(_fitted(row, operators, accepted))
+        given.update(_fitted(row, _named(operators), accepted))
     refuse_unknown(row.name, given, (*accepted, *["pop_size"] * row.takes_pop_size, "smoothness", "operators"))
     unchecked = {"smoothness", *_arguments.own_parameters(cls)}
     _arguments.check_values(row.name, {key: value for key, value in given.items() if key not in unchecked}, accepted)
-    _arguments.check_whole(row.name, "pop_size", pop_size, _least_pop_size(accepted, kwargs))
-    _arguments.check_whole(row.name, "pop_size", pop_size, most=_arguments.MOST)
+    _arguments.check_pop_size(row.name, pop_size, _least_pop_size(accepted, kwargs))
     settings = _arguments.fresh_defaults(accepted)
     if isinstance(problem, GridPathProblem) and "output" in accepted:
         settings["output"] = PathOutput()
     settings |= {key: value for key, value in _operators(row, problem, given).items() if key in accepted}
     settings |= _smoothness(row, problem, smoothness, given)
     settings |= given | _references(row, problem, pop_size, given, accepted)
+    _arguments.check_together(row.name, given, problem.n_obj, settings.get("ref_dirs"))
     if "pop_size" in accepted:
         settings["pop_size"] = pop_size
     if "survival" not in given and isinstance(settings.get("crossover"), SpliceCrossover):
@@ -175,9 +179,7 @@ def build(
         survival = settings.get("survival")
         if isinstance(survival, RankAndSmoothness):
             survival.distinct = True
-    if row.name in ("NSGA2", "SPEA2") and all(
-        mates_on_arrays(given[key]) for key in SLOTS if key != "sampling" and key in given
-    ):
+    if row.name in ("NSGA2", "SPEA2") and all(mates_on_arrays(given[key]) for key in MEMBERS[1:] if key in given):
         # The same mating several times as fast; some operators need pymoo's.
         settings["mating"] = ArrayMating(*(settings[key] for key in ("selection", "crossover", "mutation", "repair")))
     if row.name == "OmniOptimizer" and "selection" not in given:
@@ -254,9 +256,17 @@ def reference_directions(n_obj: int, n_points: int) -> np.ndarray:
     return UniformReferenceDirectionFactory(n_obj, n_partitions=n_partitions).do()
 
 
+def _named(operators: Any) -> dict[str, Any]:
+    """Return operators by what they are for, made of their names where these are given."""
+    if not isinstance(operators, Mapping):
+        raise CapabilityError(f"operators is {checks.shown(operators)}, expected a mapping such as path_operators returns")
+    refuse_unknown("operators", operators, SLOTS)
+    return {slot: operator_of(slot, given) for slot, given in operators.items()}
+
+
 def _fitted(row: Capability, operators: Mapping[str, Any], accepted) -> dict[str, Any]:
     """Return operators without those that an algorithm does not take, and with one child a mating if it needs that."""
-    fitted = {key: value for key, value in operators.items() if key in accepted or key in ("sampling", "crossover", "mutation")}
+    fitted = {key: value for key, value in operators.items() if key in accepted or key not in _LEFT_OUT}
     own = [key for key in ("crossover", "mutation") if key in fitted and not row.takes_operators]
     if own:
         raise CapabilityError(
@@ -278,7 +288,7 @@ def _may_give_one_child(crossover: Any) -> bool:
 def _operators(row: Capability, problem, given: Mapping[str, Any]) -> dict[str, Any]:
     if row.one_child and getattr(given.get("crossover"), "n_offsprings", 1) != 1:
         raise CapabilityError(f"{row.name} needs a crossover that gives one child: n_offsprings=1")
-    if given.keys() >= set(SLOTS):
+    if given.keys() >= set(MEMBERS):
         return {}
     made = default_operators(problem)
     if row.one_child:
@@ -325,7 +335,7 @@ def _references(row: Capability, problem, pop_size: int, given: Mapping[str, Any
         raise CapabilityError(
             f"{row.name} searches near reference points; give ref_points, one row of {problem.n_obj} values each"
         )
-    points = _rows("ref_points", given["ref_points"], problem)
+    points = _arguments.rows("ref_points", given["ref_points"], problem.n_obj)
     if "pop_per_ref_point" in given or "pop_per_ref_point" not in accepted:
         return {"ref_points": points}
     room = (pop_size - problem.n_obj) // len(points)
@@ -339,18 +349,10 @@ def _references(row: Capability, problem, pop_size: int, given: Mapping[str, Any
 def _ref_dirs(problem, pop_size: int, ref_dirs, accepted) -> np.ndarray:
     if ref_dirs is None:
         return reference_directions(problem.n_obj, pop_size)
-    ref_dirs = _rows("ref_dirs", ref_dirs, problem)
+    ref_dirs = _arguments.rows("ref_dirs", ref_dirs, problem.n_obj)
     if len(ref_dirs) < 2 or (len(ref_dirs) > pop_size and "pop_size" in accepted):
         raise CapabilityError(f"ref_dirs has {len(ref_dirs)} rows, expected 2 to pop_size = {pop_size}")
     return ref_dirs
-
-
-def _rows(name: str, values, problem) -> np.ndarray:
-    expected = f"rows of {problem.n_obj} finite numbers, one an objective"
-    values = checks.array(name, values, expected=expected, finite=True, error=CapabilityError).astype(float)
-    if values.ndim != 2 or values.shape[1] != problem.n_obj or not len(values):
-        raise CapabilityError(f"{name} has shape {values.shape}, expected rows of {problem.n_obj} values, one an objective")
-    return values
 
 
 def _whole_number_mating(algorithm) -> WholeNumberDE:

@@ -16,16 +16,9 @@ from pymoo_gridpath.algorithms.arguments import parameters
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.errors import CapabilityError, counted
-from pymoo_gridpath.operators.sets import SLOTS
+from pymoo_gridpath.operators.sets import MEMBERS
 from pymoo_gridpath.planners import PLANNERS, Planner
-from pymoo_gridpath.planners.signature import key_of
-from pymoo_gridpath.registry import Registry
-
-#: Algorithms of others that are known by name, see `pymoo_gridpath.registry`: derived from pymoo's ``Algorithm``, no planners.
-#: What one can do is its class attribute ``capability``, a `Capability`, or else what the signature of its constructor says.
-ALGORITHMS: Registry[type[Algorithm]] = Registry(
-    "algorithm", "pymoo_gridpath.algorithms", Algorithm, error=CapabilityError, key=key_of
-)
+from pymoo_gridpath.registry import ALGORITHMS, key_of
 
 _PACKAGES = {"scikit-learn": "sklearn"}
 _OWN = {key_of(row.name): row for row in CAPABILITIES.values()}
@@ -78,7 +71,7 @@ def find_algorithm(name: str | type[Algorithm], n_obj: int | None = None) -> Cap
 
 
 def _unknown(name: str, key: str, n_obj: int | None) -> CapabilityError:
-    rows = [*CAPABILITIES.values(), *map(_row_of_name, ALGORITHMS)]
+    rows = [*CAPABILITIES.values(), *(_row_of_name(registered) for registered, _ in ALGORITHMS.items())]
     fit = {key_of(row.name): row.name for row in rows if not row.unfit and (n_obj is None or row.takes(n_obj))}
     fit |= {key_of(planner): planner for planner in PLANNERS}
     near = difflib.get_close_matches(key, fit, n=1, cutoff=0.6)
@@ -128,7 +121,7 @@ def _row_of(cls: type[Algorithm], name: str) -> Capability:
         one_child=base is not None and base.one_child,
         repair="repair" in takes,
         needs=needed[0] if needed else "",
-        unpacks=SLOTS.keys() <= takes.keys(),
+        unpacks=set(MEMBERS) <= takes.keys(),
         deterministic=getattr(cls, "deterministic", False) is True,
         reference=getattr(cls, "reference", False) is True,
         cls=cls,

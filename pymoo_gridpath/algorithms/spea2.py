@@ -15,11 +15,13 @@ from scipy.spatial.distance import cdist
 
 from pymoo_gridpath.operators.selection import compare, decide, draw_as_pymoo, winners
 from pymoo_gridpath.operators.survival import ArraySurvival, turns_of
+from pymoo_gridpath.registry import OPERATORS
 
 #: Distances in scaled objectives that differ by no more than this are equal.
 SAME_DISTANCE = 1e-9
 
 
+@OPERATORS.register
 class StrengthAndSmoothness(ArraySurvival):
     """SPEA2's environmental selection, in which the smoother of two crowding paths survives.
 
@@ -119,6 +121,7 @@ class ArraySPEA2Survival(ArraySurvival, SPEA2Survival):
         return (F - self.norm.ideal_point) / np.where(span == 0, 1.0, span)
 
 
+@OPERATORS.register
 class StrengthTournament(TournamentSelection):
     """SPEA2's binary tournament with smoothness before density.
 

@@ -21,8 +21,10 @@ from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.operators.selection import SmoothnessTournament
 from pymoo_gridpath.operators.sets import default_operators, paper_operators, path_operators
 from pymoo_gridpath.operators.survival import RankAndSmoothness
+from pymoo_gridpath.registry import OPERATORS
 
 __all__ = [
+    "OPERATORS",
     "ArrayMating",
     "BitwiseMutation",
     "DiscretePolynomialMutation",

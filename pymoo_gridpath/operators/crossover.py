@@ -19,10 +19,12 @@ from pymoo_gridpath.operators.parameters import (
     pairs,
     whole,
 )
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.representations.mixed import MixedRepresentation
 
 
+@OPERATORS.register
 class DiscreteSBX(Crossover):
     """Simulated binary crossover on whole numbers.
 
@@ -117,6 +119,7 @@ def _spread(bound: np.ndarray, draw: np.ndarray, exponent: float) -> np.ndarray:
     return np.where(scaled <= 1.0, scaled, 1.0 / (2.0 - scaled)) ** exponent
 
 
+@OPERATORS.register
 class PointCrossover(Crossover):
     """Exchange the genes between cut points; the cuts of each mating are distinct and uniformly random.
 
@@ -156,6 +159,7 @@ class PointCrossover(Crossover):
         return np.stack([np.where(exchanged, X[1], X[0]), np.where(exchanged, X[0], X[1])])
 
 
+@OPERATORS.register
 class TwoPointCrossover(PointCrossover):
     """Two-point crossover, the paper's for the binary coding (section 2.1).
 
@@ -166,6 +170,7 @@ class TwoPointCrossover(PointCrossover):
         super().__init__(2, prob=prob, **kwargs)
 
 
+@OPERATORS.register
 class SinglePointCrossover(PointCrossover):
     """Single-point crossover, the paper's for the bits of the mixed coding (section 2.2).
 
@@ -176,6 +181,7 @@ class SinglePointCrossover(PointCrossover):
         super().__init__(1, prob=prob, **kwargs)
 
 
+@OPERATORS.register
 class MixedCrossover(Crossover):
     """Single-point crossover on the bits and discrete SBX on the integers of the mixed coding.
 

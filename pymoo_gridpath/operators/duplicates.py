@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 from pymoo.core.duplicate import DuplicateElimination
 
+from pymoo_gridpath.registry import OPERATORS
 
+
+@OPERATORS.register
 class RowDuplicates(DuplicateElimination):
     """Drop individuals whose genes equal those of an earlier one, by hashing rows.
 

@@ -19,8 +19,10 @@ from pymoo_gridpath.operators.parameters import (
     rate_of,
     rows,
 )
+from pymoo_gridpath.registry import OPERATORS
 
 
+@OPERATORS.register
 class DiscretePolynomialMutation(Mutation):
     """Polynomial mutation on whole numbers.
 
@@ -96,6 +98,7 @@ class DiscretePolynomialMutation(Mutation):
         return mutated
 
 
+@OPERATORS.register
 class BitwiseMutation(Mutation):
     """Flip each bit with a rate that falls linearly over the run.
 
@@ -151,6 +154,7 @@ class BitwiseMutation(Mutation):
         return X ^ (random_state.random(X.shape) < rate).astype(X.dtype)
 
 
+@OPERATORS.register
 class MixedMutation(Mutation):
     """Bitwise mutation on the bits and discrete polynomial mutation on the integers of the mixed coding.
 

@@ -7,10 +7,12 @@ from pymoo.core.crossover import Crossover
 
 from pymoo_gridpath.operators.parameters import CROSSOVER_RATE, in_range, one_or_two, whole
 from pymoo_gridpath.operators.path_terrain import paths_of, random_weights, terrain_of
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations.base import max_cells
 from pymoo_gridpath.search.splice import splice
 
 
+@OPERATORS.register
 class SpliceCrossover(Crossover):
     """Exchange stretches of two paths where they share a cell, or come near one another.
 

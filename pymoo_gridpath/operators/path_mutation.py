@@ -12,6 +12,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.parameters import in_range, whole
 from pymoo_gridpath.operators.path_sampling import noise_of, random_stretches
 from pymoo_gridpath.operators.path_terrain import paths_of, random_weights, terrain_of
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations.base import max_cells
 from pymoo_gridpath.search.terrain import FULL_WEIGHT
 from pymoo_gridpath.search.vary import REROUTE, SHIFT, STRAIGHTEN, Changes, vary
@@ -20,6 +21,7 @@ from pymoo_gridpath.search.vary import REROUTE, SHIFT, STRAIGHTEN, Changes, vary
 WAYS = {"weighted": 0.5, "random": 0.2, "shortcut": 0.1, "straighten": 0.1, "shift": 0.1}
 
 
+@OPERATORS.register
 class PathMutation(Mutation):
     """Replace a random stretch between two cells of a path.
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from pymoo.core.repair import Repair
 
 from pymoo_gridpath.operators.path_terrain import terrain_of
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations.base import max_cells, representation_of
 from pymoo_gridpath.search.sequences import are_legal, mend
 
 
+@OPERATORS.register
 class PathRepair(Repair):
     """Make legal paths of rows that are none, and leave the others as they are.
 

@@ -9,6 +9,7 @@ from pymoo.util.reference_direction import UniformReferenceDirectionFactory
 from pymoo_gridpath.operators.duplicates import row_keys
 from pymoo_gridpath.operators.parameters import in_range
 from pymoo_gridpath.operators.path_terrain import objective_terms, random_weights, terrain_of, whole_weights
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations.base import max_cells
 from pymoo_gridpath.search.draw import cheapest_paths, paths_through
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, steps_through
@@ -30,6 +31,7 @@ LARGEST_BLOCK = 3
 ROUNDS = 4
 
 
+@OPERATORS.register
 class ReachableSampling(Sampling):
     """Draw random legal paths: through a random cell, along cheapest routes under random costs.
 
@@ -94,6 +96,7 @@ class ReachableSampling(Sampling):
         return problem.representation.from_sequences(paths)
 
 
+@OPERATORS.register
 class ScalarizedSampling(Sampling):
     """Take the cheapest paths for weights that are spread evenly over the objectives, each scaled by its range.
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pymoo.core.repair import Repair
 
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations.base import representation_of
 
 
+@OPERATORS.register
 class EdgeFixing(Repair):
     """Bring moves that leave the grid back by the paper's random rule, and round genes that are not whole.
 

@@ -6,8 +6,10 @@ import numpy as np
 from pymoo.core.sampling import Sampling
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.registry import OPERATORS
 
 
+@OPERATORS.register
 class RandomSampling(Sampling):
     """Draw every gene uniformly from its bounds, as whole numbers or bits.
 

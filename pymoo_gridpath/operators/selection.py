@@ -6,7 +6,10 @@ import numpy as np
 from pymoo.algorithms.moo.omni import NeighborBasedTournamentSelection
 from pymoo.operators.selection.tournament import TournamentSelection
 
+from pymoo_gridpath.registry import OPERATORS
 
+
+@OPERATORS.register
 class SmoothnessTournament(TournamentSelection):
     """The modified NSGA-II's binary tournament: rank, then smoothness, then crowding.
 

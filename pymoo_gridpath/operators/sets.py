@@ -4,12 +4,6 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pymoo.core.crossover import Crossover
-from pymoo.core.duplicate import DuplicateElimination
-from pymoo.core.mutation import Mutation
-from pymoo.core.repair import Repair
-from pymoo.core.sampling import Sampling
-
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.crossover import DiscreteSBX, MixedCrossover, TwoPointCrossover
@@ -26,14 +20,6 @@ from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.representations.base import Representation, representation_of
 from pymoo_gridpath.representations.mixed import MixedRepresentation
 
-#: What algorithms take as operators, and what each must be.
-SLOTS: dict[str, type] = {
-    "sampling": Sampling,
-    "crossover": Crossover,
-    "mutation": Mutation,
-    "repair": Repair,
-    "eliminate_duplicates": DuplicateElimination,
-}
 _VARIATION = ("crossover", "mutation")
 
 #: The samplings that know paths, by the name of the set that they make.
@@ -49,6 +35,10 @@ def path_classes(sampling: str = "scalarized") -> dict[str, type]:
         "repair": PathRepair,
         "eliminate_duplicates": RowDuplicates,
     }
+
+
+#: What a set of operators has an operator for.
+MEMBERS = tuple(path_classes())
 
 
 def paper_classes(representation: type[Representation]) -> dict[str, type]:
@@ -121,7 +111,7 @@ def paper_operators(problem, eta_crossover: float = ETA_CROSSOVER, eta_mutation:
     etas = ({}, {}) if representation.vtype is bool else ({"eta": eta_crossover}, {"eta": eta_mutation})
     made["crossover"] = crossover(**etas[0], prob=CROSSOVER_RATE)
     made["mutation"] = mutation(**etas[1], prob_var=1.0 / representation.frame.n_columns)
-    return {slot: made[slot] for slot in SLOTS}
+    return {slot: made[slot] for slot in MEMBERS}
 
 
 def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalarized") -> dict:

@@ -14,6 +14,7 @@ from pymoo.util.randomized_argsort import randomized_argsort
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.operators.array_population import ArrayPopulation
+from pymoo_gridpath.registry import OPERATORS
 
 
 class ArraySurvival(Survival):
@@ -49,6 +50,7 @@ def turns_of(pop, owner: str) -> np.ndarray:
     return turn.astype(float)
 
 
+@OPERATORS.register
 class RankAndSmoothness(ArraySurvival):
     """The modified NSGA-II's survival: whole fronts first, and of the last one the smoothest paths.
 

@@ -13,9 +13,9 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.planners.display import PathOutput
-from pymoo_gridpath.planners.signature import key_of, parameters_of, refuse_unknown
+from pymoo_gridpath.planners.signature import parameters_of, refuse_unknown
 from pymoo_gridpath.problems.members import are_legal
-from pymoo_gridpath.registry import Registry
+from pymoo_gridpath.registry import Registry, key_of
 from pymoo_gridpath.representations.base import representation_of
 
 

@@ -1,19 +1,12 @@
-"""What an algorithm is called, and which keyword arguments its constructor takes."""
+"""Which keyword arguments the constructor of an algorithm takes."""
 
 from __future__ import annotations
 
 import inspect
-import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from pymoo_gridpath.errors import CapabilityError, counted, nearest
-
-
-def key_of(name: object) -> str:
-    """Return what all spellings of the name of an algorithm have in common: "NSGA-II", "nsga2" and "Nsga_2" are one."""
-    key = re.sub(r"[^a-z0-9]", "", name.lower()) if isinstance(name, str) else ""
-    return re.sub(r"ii$", "2", re.sub(r"iii$", "3", key))
 
 
 def parameters_of(cls: type, below: type = object) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Comparison studies: which problems, algorithms, seeds and budget; running them anywhere; what came of it, with statistics."""
 
-from importlib import import_module
+from pymoo_gridpath.lazy import lazy
 
 # Imported where they are first used, since the command line reads this package for every command.
 _HOMES = {
@@ -19,13 +19,8 @@ _HOMES = {
     "load_study": "specification.toml_file",
     "plan_study": "planning.expand",
     "run_study": "running.runner",
-    "write_report": "report",
+    "write_report": "report.writing",
 }
 
 __all__ = sorted(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll]
-
-
-def __getattr__(name: str):
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+__getattr__, __dir__ = lazy(__name__, _HOMES)

@@ -54,6 +54,6 @@ def test_populations_too_small_to_end_are_refused(name, given, least):
     from pymoo_gridpath.errors import CapabilityError
 
     problem = GridPathProblem(OccupancyGrid(np.zeros((6, 6))), (0, 0), (5, 5), "integer")
-    with pytest.raises(CapabilityError, match=f"expected a whole number of at least {least} for"):
+    with pytest.raises(CapabilityError, match=f"expected a whole number of at least {least} and at most"):
         make_algorithm(name, problem, pop_size=least - 1, **given)
     assert minimize(problem, make_algorithm(name, problem, pop_size=least, **given), ("n_gen", 2), seed=1).pop is not None

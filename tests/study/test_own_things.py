@@ -8,12 +8,13 @@ import json
 import pickle
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 
 import pytest
 
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.objectives import Vulnerability
-from pymoo_gridpath.operators import DiscreteSBX, paper_operators
+from pymoo_gridpath.operators import OPERATORS, DiscreteSBX, RankAndSmoothness, paper_operators
 from pymoo_gridpath.operators.parameters import number
 from pymoo_gridpath.representations import IntegerRepresentation
 from pymoo_gridpath.study import LocalProcesses, Store, Study, load_study, plan_study, run_study
@@ -210,6 +211,56 @@ def test_python_takes_classes_and_objects(hikers):
     assert wide.runs[0].key != plain.runs[0].key
 
 
+@pytest.fixture
+def shuffle(hikers, monkeypatch):
+    """An entry point of an installed package."""
+    point = EntryPoint("shuffle", "hikers:Sbx", OPERATORS.group)
+    monkeypatch.setattr(OPERATORS, "_known", dict(OPERATORS._known))
+    monkeypatch.setattr(OPERATORS, "_names", dict(OPERATORS._names))
+    monkeypatch.setattr(OPERATORS, "_entry_points", {"shuffle": point})
+
+
+def test_an_operator_by_its_name_is_the_same_as_by_its_path(hikers, shuffle, tmp_path):
+    first, second, third, fourth = (
+        planned({"operators": {"crossover": crossover}})
+        for crossover in ("shuffle", "hikers:Sbx", {"class": "shuffle", "eta": 3}, {"class": "hikers:Sbx", "eta": 3})
+    )
+    assert [run.key for run in first.runs] == [run.key for run in second.runs] != [run.key for run in third.runs]
+    assert [run.key for run in third.runs] == [run.key for run in fourth.runs]
+    _, algorithm = built(third)
+    assert type(algorithm.mating.crossover) is hikers.Sbx and number(algorithm.mating.crossover.eta) == 3
+    # In processes that have the module, and nothing registered.
+    with LocalProcesses(2) as executor:
+        outcome = run_study(third, tmp_path / "out", executor)
+    assert (outcome.n_run, outcome.n_failed) == (1, 0)
+
+
+def test_a_selection_and_a_survival_leave_the_tie_break_out(hikers):
+    given = {"selection": "SmoothnessTournament", "survival": {"class": "RankAndSmoothness", "distinct": True}}
+    plan = planned({"operators": given})
+    spec = plan.task(plan.runs[0]).algorithm
+    assert spec["smoothness"] is False
+    assert spec["operators"]["survival"] == {"class": "RankAndSmoothness", "distinct": True}
+    _, algorithm = built(plan)
+    assert type(algorithm.survival) is RankAndSmoothness and algorithm.survival.distinct
+    _, other = built(planned({"operators": {"survival": RankAndSmoothness(distinct=True)}}))
+    assert other.survival.distinct and type(other.mating.selection) is not type(algorithm.mating.selection)
+    plain = planned()
+    assert plain.task(plain.runs[0]).algorithm["operators"].keys() == paper_operators(built(plain)[0]).keys()
+
+
+def test_a_plan_that_names_what_is_installed_makes_nobody_import(hikers, shuffle, tmp_path):
+    store = Store(tmp_path / "out")
+    store.write_plan(planned({"operators": {"mutation": "PathMutation", "crossover": "DiscreteSBX"}}))
+    file = tmp_path / "out" / "plan.json"
+    file.write_text(file.read_text().replace('"DiscreteSBX"', '"shuffle"'))
+    (tmp_path / "hikers.py").write_text("raise SystemExit('imported')")
+    del sys.modules["hikers"]
+    with pytest.raises(GridPathError, match="class is 'shuffle'; expected one of"):
+        store.read_plan()
+    assert "hikers" not in sys.modules
+
+
 def test_a_study_with_things_of_ones_own_goes_into_a_file_and_back(hikers):
     study = Study.from_dict(
         {
@@ -246,6 +297,8 @@ def local_class():
         ({}, {"objectives": ["length", {"class": "hikers:Hilly", "slop": 1}]}, "did you mean 'slope'"),
         ({}, {"objectives": ["length", {"slope": 1}]}, "objective has no class"),
         ({}, {"representation": "hikers:Hilly"}, "expected a class derived from Representation"),
+        ({"operators": {"crossover": "suffle"}}, {}, "there is no crossover 'suffle'; expected one of DiscreteSBX, "),
+        ({"operators": {"crossover": "DiscretSBX"}}, {}, "there is no crossover 'DiscretSBX'; did you mean 'DiscreteSBX'?"),
         ({"operators": {"crossover": "hikers:Mine"}}, {}, "expected a class derived from Crossover"),
         ({"operators": {"crossover": {"class": "hikers:Sbx", "eta": -3}}}, {}, "cannot be made so"),
         ({"algorithm": "hikers:Hilly"}, {}, "expected a class derived from Algorithm"),

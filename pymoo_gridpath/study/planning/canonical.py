@@ -10,7 +10,7 @@ from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.paper import REPRESENTATION, paper_treatment
-from pymoo_gridpath.operators.sets import SLOTS, default_set, paper_classes, path_classes
+from pymoo_gridpath.operators.sets import MEMBERS, default_set, paper_classes, path_classes
 from pymoo_gridpath.problems.grid_path import default_penalty
 from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.specification.kinds import is_monotone, is_of_paper, objective_name, of_package
@@ -53,7 +53,9 @@ def resolve(
     settled = dict(algorithm)
     if "smoothness" in settled and settled["smoothness"] is None:
         turns = "turn" in map(objective_name, changed["objectives"])
-        settled["smoothness"] = CAPABILITIES[settled["algorithm"]].smoothness and not turns
+        # Each would bring its own.
+        given = {"selection", "survival"} & settled["operators"].keys()
+        settled["smoothness"] = CAPABILITIES[settled["algorithm"]].smoothness and not turns and not given
     if "operators" in settled:
         settled["operators"] = _resolved_operators(settled["operators"], settled["algorithm"], changed["representation"])
     return changed, settled
@@ -94,7 +96,7 @@ def _resolved_operators(given: Mapping[str, Any], algorithm: Any, representation
     else:
         # Differential evolution makes its children itself.
         whole = planner_of(algorithm) is not None or CAPABILITIES[algorithm].takes_operators
-        slots = list(SLOTS) if whole or given["base"] != "default" else ["sampling", "repair"]
+        slots = list(MEMBERS) if whole or given["base"] != "default" else ["sampling", "repair"]
     if base != "paper":
         classes = path_classes(base)
     elif isinstance(representation, str):
@@ -106,5 +108,5 @@ def _resolved_operators(given: Mapping[str, Any], algorithm: Any, representation
         # Of a coding of one's own, the problem decides on all.
         classes = {}
     names = {slot: cls.__name__ for slot, cls in classes.items()}
-    found: dict[str, Any] = {slot: dict(default_operator(names[slot], slot)) if slot in names else "paper" for slot in slots}
+    found: dict[str, Any] = {slot: dict(default_operator(names[slot])) if slot in names else "paper" for slot in slots}
     return found | {slot: dict(value) for slot, value in given.items() if slot != "base"}

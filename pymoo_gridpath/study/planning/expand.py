@@ -140,7 +140,7 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
                 raise study.error(message, (*where, "obstacles"))
             problem = refuse(study, where, about, build_problem, content, planned.grid)
             made = refuse(study, where, about, build_algorithm, settled, problem)
-            _check_parameters(study, k, made, problem.n_obj, settled)
+            _check_pop_size(study, k, made, settled)
             _check_promises(study, k, problem, settled, made)
             if not has_own_budget(settled):
                 pairs.append(Pair(content, settled, planned.grid, planned.label, k))
@@ -167,23 +167,14 @@ def _check_advancing(study: Study, where, members: list[PlannedProblem], content
         refuse(study, where, about, build_representation, content["representation"], grid, start, goal, content["axis"])
 
 
-def _check_parameters(study: Study, k: int, made: Any, n_obj: int, algorithm: Mapping[str, Any]) -> None:
-    """Refuse what pymoo would make fit without a word."""
-    given, where = algorithm.get("parameters", {}), ("algorithms", k, "parameters")
-    if "n_neighbors" in given and given["n_neighbors"] > len(made.ref_dirs):
-        raise study.error(
-            f"n_neighbors is {given['n_neighbors']}, expected at most the {len(made.ref_dirs)} reference directions",
-            (*where, "n_neighbors"),
-        )
+def _check_pop_size(study: Study, k: int, made: Any, algorithm: Mapping[str, Any]) -> None:
+    """Refuse a size of populations beside what decides about it."""
+    given = algorithm.get("parameters", {})
     decided = [key for key in ("ref_dirs", "pop_per_ref_point") if key in given]
     if decided and study.algorithms[k].pop_size is not None and made.pop_size != algorithm["pop_size"]:
         raise study.error(
             f"pop_size is {algorithm['pop_size']}, but {decided[0]} makes it {made.pop_size}; leave pop_size out",
             ("algorithms", k, "pop_size"),
-        )
-    if "weights" in given and len(given["weights"]) != n_obj:
-        raise study.error(
-            f"weights has {len(given['weights'])} entries, expected one for each of the {n_obj} objectives", (*where, "weights")
         )
 
 

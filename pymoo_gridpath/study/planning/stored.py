@@ -6,17 +6,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms.arguments import check_pop_size
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.errors import StudyError, nearest
 from pymoo_gridpath.objectives import Objective
-from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import Planner, reference_planner
-from pymoo_gridpath.planners.signature import key_of
+from pymoo_gridpath.registry import SLOTS, key_of
 from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec
-from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name, of_package
+from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name, of_package, operators_of_package
 from pymoo_gridpath.study.specification.operators import planner_of
 from pymoo_gridpath.study.specification.problem import ProblemSpec, RandomFamily
 from pymoo_gridpath.study.specification.study import Study
@@ -189,6 +189,15 @@ def _planner(value: Any, where: Where, *further: str) -> dict[str, Any]:
     return table
 
 
+def _check_operator(slot: str, single: Any, where: Where) -> None:
+    """Refuse an operator that is neither of this package nor said enough of, so that nothing is imported for its name."""
+    name = values.table(single, where).get("class")
+    if own.is_path(name):
+        own.check_entry(single, slot, where)
+    else:
+        values.choice(name, operators_of_package(), (*where, "class"))
+
+
 def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str, Any]:
     _check_texts(algorithm, ("label",), where)
     place = (*where, "spec")
@@ -208,12 +217,12 @@ def _check_algorithm(algorithm: Mapping[str, Any], where: Where) -> Mapping[str,
         spec = _table(spec, keys, place, "the algorithm")
         operators = _table(spec["operators"], ("base",), (*place, "operators"), "operators", tuple(SLOTS))
         for slot, single in operators.items():
-            if slot != "base" and own.is_path(values.table(single, (*place, "operators", slot)).get("class")):
-                own.check_entry(single, slot, (*place, "operators", slot))
+            if slot != "base":
+                _check_operator(slot, single, (*place, "operators", slot))
         kept = {slot: one for slot, one in operators.items() if slot == "base" or not own.is_path(one.get("class"))}
         spec["operators"] = kept
         values.table(spec["parameters"], (*place, "parameters"))
-        values.whole(spec["pop_size"], (*place, "pop_size"), 2, values.MAX_POP_SIZE)
+        values.told((*place, "pop_size"), check_pop_size, "an algorithm", spec["pop_size"])
     overrides = _table(algorithm["overrides"], (), (*where, "overrides"), "overrides", _OVERRIDES)
     for key, value in overrides.items():
         if value is None:

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms.arguments import check_pop_size
 from pymoo_gridpath.errors import StudyError
-from pymoo_gridpath.operators.sets import SLOTS
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import OBSTACLES
+from pymoo_gridpath.registry import SLOTS
 from pymoo_gridpath.study.specification import operators as _operators
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
@@ -40,9 +41,9 @@ class AlgorithmSpec:
         Whether ties are broken by total turn, see `make_algorithm`.
     operators : str or mapping, default "default"
         "default", "paper", "scalarized", "random" (the last two are `path_operators`), or a mapping of ``sampling``,
-        ``crossover``, ``mutation``, ``repair`` and ``eliminate_duplicates``, each the name of a class of
-        `pymoo_gridpath.operators`, the path of a class, a mapping of ``class`` and its arguments, a class or an object;
-        ``base`` says where the others come from.
+        ``crossover``, ``mutation``, ``repair``, ``eliminate_duplicates``, ``selection`` and ``survival``, each the name of one
+        of `pymoo_gridpath.operators.OPERATORS`, the path of a class, a mapping of ``class`` and its arguments, a class or an
+        object; ``base`` says where the others come from.
     parameters : mapping, optional
         Further arguments of the algorithm or planner, such as ``n_neighbors``.
     max_seconds, max_labels : optional
@@ -78,7 +79,7 @@ class AlgorithmSpec:
             raise StudyError("the algorithm has no key algorithm and no preset, or both; expected one of them")
         set_given(self, "name", check=values.text)
         set_given(self, "preset", check=lambda value, where: values.choice(value, PRESETS, where))
-        set_given(self, "pop_size", check=lambda value, where: values.whole(value, where, 2, values.MAX_POP_SIZE))
+        set_given(self, "pop_size", check=lambda value, where: values.told(where, check_pop_size, "an algorithm", value))
         set_given(self, "max_labels", check=lambda value, where: values.whole(value, where, 1))
         set_given(self, "smoothness", check=values.flag)
         set_given(self, "max_seconds", check=values.real)
@@ -131,13 +132,9 @@ class AlgorithmSpec:
 
     def _check_slots(self) -> None:
         algorithm = str(self.algorithm)
-        if own.is_path(algorithm):
-            slots = operator_slots(own.read(algorithm, ALGORITHM, ("algorithm",)).cls)
-            whole = bool({"crossover", "mutation"} & set(slots))
-        elif (planner := _operators.planner_of(algorithm)) is not None:
-            slots, whole = operator_slots(planner), True
-        else:
-            slots, whole = list(accepted_parameters(algorithm)), CAPABILITIES[algorithm].takes_operators
+        cls = own.read(algorithm, ALGORITHM, ("algorithm",)).cls if own.is_path(algorithm) else _operators.planner_of(algorithm)
+        slots = list(SLOTS) if cls is not None and issubclass(cls, Planner) else list(accepted_parameters(algorithm))
+        whole = bool({"crossover", "mutation"} & set(slots)) if cls is not None else CAPABILITIES[algorithm].takes_operators
         if not whole and self.operators["base"] != "default":
             raise StudyError(
                 f"{algorithm} makes children in a way of its own, so that there is no set of operators for it; "

@@ -9,9 +9,10 @@ from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath.algorithms import find_algorithm
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
-from pymoo_gridpath.operators.sets import SLOTS
+from pymoo_gridpath.operators.sets import MEMBERS
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.planners.signature import parameters_of
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations import REPRESENTATIONS, Representation
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.own import Kind
@@ -62,17 +63,22 @@ def of_package(base: Any) -> dict[str, Any]:
     while queue:
         cls = queue.pop()
         queue += cls.__subclasses__()
-        if cls.__module__.startswith("pymoo_gridpath.") and isinstance(getattr(cls, "name", None), str):
+        if own.is_of_package(cls) and isinstance(getattr(cls, "name", None), str):
             found[cls.name] = cls
     return found
 
 
+def operators_of_package() -> dict[str, type]:
+    """Return the operators of this package by name, likewise."""
+    return {name: cls for name, cls in OPERATORS.registered().items() if own.is_of_package(cls)}
+
+
 def operator_slots(cls: type) -> list[str]:
-    """Return which operators an algorithm takes: its constructor one by one, a planner all together."""
+    """Return which operators of a set an algorithm takes: its constructor one by one, a planner all together."""
     if issubclass(cls, Planner):
-        return list(SLOTS) if cls.takes_operators else []
+        return list(MEMBERS) if cls.takes_operators else []
     takes = parameters_of(cls)
-    return [slot for slot in SLOTS if slot in takes]
+    return [slot for slot in MEMBERS if slot in takes]
 
 
 def takes_pop_size(cls: type) -> bool:

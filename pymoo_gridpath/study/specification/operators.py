@@ -9,18 +9,20 @@ from typing import Any
 
 from pymoo.core.algorithm import Algorithm
 
-from pymoo_gridpath import operators as _operators
 from pymoo_gridpath.algorithms import Capability, find_algorithm
 from pymoo_gridpath.algorithms.known import class_of
-from pymoo_gridpath.errors import CapabilityError, StudyError, nearest
-from pymoo_gridpath.operators.sets import PATH_SAMPLINGS, SLOTS, path_classes
+from pymoo_gridpath.errors import StudyError, nearest
+from pymoo_gridpath.operators.known import BASES, find_operator
+from pymoo_gridpath.operators.sets import PATH_SAMPLINGS
 from pymoo_gridpath.planners import Planner
+from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.study.specification import own, values
-from pymoo_gridpath.study.specification.kinds import ALGORITHM, of_package
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, of_package, operators_of_package
 from pymoo_gridpath.study.specification.own import Kind
 from pymoo_gridpath.study.specification.values import Where
 
-BASES = ("default", "paper", *PATH_SAMPLINGS)
+#: Names of sets of operators.
+SETS = ("default", "paper", *PATH_SAMPLINGS)
 
 
 def read_algorithm(value: Any, where: Where) -> str:
@@ -55,10 +57,7 @@ def algorithm_name(name: str, where: Where) -> str:
         If there is no such algorithm, no grid problem suits it, a package that it needs is missing, or no other process can
         import its class.
     """
-    try:
-        row = find_algorithm(name)
-    except CapabilityError as error:
-        raise StudyError(str(error), where) from None
+    row = values.told(where, find_algorithm, name)
     cls = row if isinstance(row, type) else row.cls
     if cls is not None:
         # By its class, since what one process has registered is unknown to others.
@@ -68,10 +67,7 @@ def algorithm_name(name: str, where: Where) -> str:
         raise StudyError(f"{row.name} {row.unfit}", where)
     if row.needs == "automated_dm":
         raise StudyError(f"{row.name} asks a decision maker during the run, whom a study cannot describe", where)
-    try:
-        class_of(row)
-    except CapabilityError as error:
-        raise StudyError(str(error), where) from None
+    values.told(where, class_of, row)
     return row.name
 
 
@@ -94,53 +90,51 @@ def operators(given: Any, where: Where) -> dict[str, Any]:
         If there is no such set, operator or argument, or an operator is of another kind, or it refuses an argument.
     """
     if isinstance(given, str):
-        return {"base": values.choice(given, BASES, where)}
+        return {"base": values.choice(given, SETS, where)}
     table = values.table(given, where)
-    values.check_keys(table, ("base", *SLOTS), where, "operators")
-    found: dict[str, Any] = {"base": values.choice(table.pop("base", "default"), BASES, (*where, "base"))}
+    values.check_keys(table, ("base", *BASES), where, "operators")
+    found: dict[str, Any] = {"base": values.choice(table.pop("base", "default"), SETS, (*where, "base"))}
     return found | {slot: _operator(slot, value, (*where, slot)) for slot, value in table.items()}
-
-
-@functools.cache
-def operator_classes(slot: str) -> dict[str, type]:
-    """Return the operators of this package that fit a slot, by name."""
-    classes = {name: getattr(_operators, name) for name in _operators.__all__}
-    return {name: cls for name, cls in classes.items() if isinstance(cls, type) and issubclass(cls, SLOTS[slot])}
 
 
 def make_operator(slot: str, spec: Mapping[str, Any]):
     """Return the operator that a canonical entry describes."""
     if own.is_path(spec["class"]):
         return own.make(spec, _kind_of(slot))
-    return operator_classes(slot)[spec["class"]](**{key: value for key, value in spec.items() if key != "class"})
+    return operators_of_package()[spec["class"]](**{key: value for key, value in spec.items() if key != "class"})
 
 
 def _operator(slot: str, given: Any, where: Where) -> dict[str, Any]:
-    named = given.get("class") if isinstance(given, Mapping) else given
-    if (not isinstance(named, str) and named is not None) or own.is_path(named):
-        found = own.read(given, _kind_of(slot), where)
-        if own.is_path(found.name):
-            _try_operator(found.name, lambda: found.cls(**found.arguments), where)
-            return {"class": found.name, **found.arguments}
-        given = {"class": found.name, **found.arguments}
-    table = {"class": given} if isinstance(given, str) else values.table(given, where)
+    table = values.table(given, where) if isinstance(given, Mapping) else {"class": given}
     if "class" not in table:
-        raise StudyError(f"{slot} has no class, expected such as {{ class = {path_classes()[slot].__name__!r} }}", where)
-    classes = operator_classes(slot)
-    name = values.choice(table.pop("class"), classes, where)
-    arguments = _own_arguments(classes[name])
-    for key in table:
+        example = next(name for name, cls in operators_of_package().items() if issubclass(cls, BASES[slot]))
+        raise StudyError(f"{slot} has no class, expected such as {{ class = {example!r} }}", where)
+    named = table["class"]
+    if isinstance(named, str) and not own.is_path(named):
+        cls = values.told(where, find_operator, slot, named)
+        if own.is_of_package(cls):
+            return _operator_of_package(slot, named, cls, table, where)
+        # By its class, since what one process has registered is unknown to others.
+        given = {**table, "class": cls}
+    found = own.read(given, _kind_of(slot), where)
+    if not own.is_path(found.name):
+        return _operator_of_package(slot, found.name, found.cls, {"class": found.name, **found.arguments}, where)
+    _try_operator(found.name, lambda: found.cls(**found.arguments), where)
+    return {"class": found.name, **found.arguments}
+
+
+def _operator_of_package(slot: str, name: str, cls: type, table: dict[str, Any], where: Where) -> dict[str, Any]:
+    """Return an operator of this package with all of its arguments."""
+    given = {key: value for key, value in table.items() if key != "class"}
+    arguments = _own_arguments(cls)
+    for key in given:
         if key not in arguments:
             hint = nearest(key, arguments, "it takes") if arguments else "it takes none"
             raise StudyError(f"{name} takes no argument {values.show(key)}; {hint}", (*where, key))
-        # A plan says none where that is the default.
-        by_default = table[key] is None and arguments[key] is None
-        if isinstance(arguments[key], int | float) or (key == "prob_var" and not by_default):
-            values.number(table[key], (*where, key))
-    for key, item in inspect.signature(classes[name]).parameters.items():
-        if key in arguments and item.default is item.empty and key not in table:
+    for key, item in inspect.signature(cls).parameters.items():
+        if key in arguments and item.default is item.empty and key not in given:
             raise StudyError(f"{name} has no {key}, expected such as {{ class = {name!r}, {key} = 2 }}", where)
-    given = {key: values.like(arguments[key], values.plain_json(value, (*where, key))) for key, value in table.items()}
+    given = {key: values.like(arguments[key], values.plain_json(value, (*where, key))) for key, value in given.items()}
     spec = {"class": name, **arguments, **given}
     _try_operator(name, lambda: make_operator(slot, spec), where)
     return spec
@@ -154,7 +148,7 @@ def _try_operator(name: str, make: Callable[[], Any], where: Where) -> None:
 
 
 def _kind_of(slot: str) -> Kind:
-    return Kind(slot, SLOTS[slot], operator_classes(slot))
+    return Kind(slot, BASES[slot], OPERATORS)
 
 
 def operator_entry(slot: str, spec: Mapping[str, Any]) -> dict[str, Any]:
@@ -177,5 +171,6 @@ def _own_arguments(cls: type) -> dict[str, Any]:
 
 
 @functools.cache
-def default_operator(name: str, slot: str) -> dict[str, Any]:
-    return {"class": name, **_own_arguments(operator_classes(slot)[name])}
+def default_operator(name: str) -> dict[str, Any]:
+    """Return an operator of this package with the defaults of its arguments, in canonical form."""
+    return {"class": name, **_own_arguments(operators_of_package()[name])}

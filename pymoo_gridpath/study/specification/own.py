@@ -27,7 +27,6 @@ from pymoo_gridpath.study.specification.values import Where
 
 PATH = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*:[^\W\d]\w*(?:\.[^\W\d]\w*)*")
 
-_PACKAGE = "pymoo_gridpath."
 # Arguments that pymoo's operators inherit and that no file can hold.
 _INHERITED = ("name", "vtype", "repair", "func", "cmp_func")
 
@@ -51,6 +50,11 @@ class Given(NamedTuple):
 def is_path(name: object) -> bool:
     """Whether a name is the import path of a class."""
     return isinstance(name, str) and ":" in name
+
+
+def is_of_package(cls: type) -> bool:
+    """Whether a class is of this package."""
+    return cls.__module__.startswith("pymoo_gridpath.")
 
 
 def read(value: Any, kind: Kind, where: Where) -> Given:
@@ -201,10 +205,10 @@ def _named(value: Any, kind: Kind, where: Where) -> tuple[type, str]:
             cls = kind.known[value] if value in kind.known else kind.known[values.choice(value, kind.known, where)]
         except GridPathError as error:
             raise error if isinstance(error, StudyError) else StudyError(str(error), where) from None
-        if cls.__module__.startswith(_PACKAGE):
+        if is_of_package(cls):
             return cls, str(value)
     _check_class(cls, kind, where)
-    if cls.__module__.startswith(_PACKAGE):
+    if is_of_package(cls):
         for name in kind.known:
             if name in (cls.__name__, getattr(cls, "name", None)) and kind.known[name] is cls:
                 return cls, str(name)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import StudyError, nearest
+from pymoo_gridpath.errors import GridPathError, StudyError, nearest
+
+T = TypeVar("T")
 
 # Places in a study: keys and indices.
 Where = tuple[str | int, ...]
@@ -18,7 +20,6 @@ Where = tuple[str | int, ...]
 MAX_SEED = 2**32 - 1
 MAX_SEEDS = 100_000
 # Far more than a run can do with, so that a zero too many is noticed.
-MAX_POP_SIZE = 100_000
 MAX_BUDGET = 1_000_000_000
 
 # Keys of a study that none of its tables has too.
@@ -49,6 +50,14 @@ def refuse_key_of_study(key: str, where: Where, owner: str) -> None:
     """Refuse a key of the study that stands below the head of a table, which makes it a key of that table."""
     if key in _KEYS_OF_STUDY:
         raise StudyError(f"{key} is a key of the study, not of {owner}; write it above the first [[...]] table", where)
+
+
+def told(where: Where, function: Callable[..., T], *arguments: Any) -> T:
+    """Return what a function of the package returns, and put the place in the study before what it says is wrong."""
+    try:
+        return function(*arguments)
+    except GridPathError as error:
+        raise StudyError(str(error), where) from None
 
 
 def table(value: object, where: Where) -> dict[str, Any]:

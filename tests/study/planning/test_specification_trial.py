@@ -9,9 +9,9 @@ from inspect import Parameter
 import numpy as np
 import pytest
 
-from pymoo_gridpath.algorithms import CAPABILITIES
-from pymoo_gridpath.errors import StudyError
-from pymoo_gridpath.problems import OBSTACLES
+from pymoo_gridpath.algorithms import CAPABILITIES, make_algorithm
+from pymoo_gridpath.errors import CapabilityError, StudyError
+from pymoo_gridpath.problems import OBSTACLES, GridPathProblem, random_dense_grid
 from pymoo_gridpath.representations import REPRESENTATIONS
 from pymoo_gridpath.study.planning import trial
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
@@ -220,38 +220,38 @@ def test_a_population_that_others_decide_is_not_given_too():
 # -- parameters ---------------------------------------------------------------------------------------------------------
 
 REFUSED = [
-    ("MOEAD", {"n_neighbors": 50}, "n_neighbors is 50, expected at most the 20 reference directions"),
-    ("ParallelMOEAD", {"n_neighbors": 21}, "n_neighbors is 21, expected at most the 20 reference directions"),
-    ("MOEAD", {"n_neighbors": 1}, "n_neighbors is 1, expected a whole number, 2 to"),
-    ("MOEAD", {"prob_neighbor_mating": 2}, "prob_neighbor_mating is 2.0, expected a number, 0 to 1"),
+    ("MOEAD", {"n_neighbors": 50}, "n_neighbors is 50, expected at most the 20 reference directions of "),
+    ("ParallelMOEAD", {"n_neighbors": 21}, "n_neighbors is 21, expected at most the 20 reference directions of "),
+    ("MOEAD", {"n_neighbors": 1}, "n_neighbors is 1, expected a whole number of at least 2 and at most 100,000 for MOEAD"),
+    ("MOEAD", {"prob_neighbor_mating": 2}, "prob_neighbor_mating is 2.0, expected a number from 0 to 1 for "),
     ("MOEAD", {"batch_size": 2.5}, "batch_size is 2.5, expected a whole number"),
-    ("MOEAD", {"ref_dirs": [[0, 1], [-1, 0]]}, "expected directions of a share for each objective"),
-    ("MOEAD", {"ref_dirs": [[0, 1], [0, 0]]}, "expected directions of a share for each objective"),
-    ("MOEAD", {"ref_dirs": [[0, 1], [1]]}, "expected directions of a share for each objective"),
+    ("MOEAD", {"ref_dirs": [[0, 1], [-1, 0]]}, "holds a row that is no direction, expected shares of 0 or more, not all 0"),
+    ("MOEAD", {"ref_dirs": [[0, 1], [0, 0]]}, "holds a row that is no direction, expected shares of 0 or more, not all 0"),
+    ("MOEAD", {"ref_dirs": [[0, 1], [1]]}, "expected rows of values, one an objective, such as [[0, 1], [1, 0]]"),
     ("RNSGA2", {"ref_points": POINTS, "normalization": "fornt"}, "normalization is 'fornt'; did you mean 'front'?"),
     ("RNSGA2", {"ref_points": POINTS, "weights": [1]}, "weights has 1 entries, expected one for each of the 2 objectives"),
-    ("RNSGA2", {"ref_points": POINTS, "weights": 3}, "weights is 3, expected one for each objective"),
-    ("RNSGA2", {"ref_points": POINTS, "weights": [-1, 2]}, "weights is [-1, 2], expected one for each objective"),
-    ("RNSGA2", {"ref_points": [1, 2]}, "ref_points is [1, 2], expected points"),
-    ("RNSGA2", {"ref_points": [[1, 2, 3]]}, "expected rows of 2 values"),
-    ("RNSGA3", {"ref_points": POINTS, "mu": 3}, "mu is 3.0, expected a number, 0 to 1"),
+    ("RNSGA2", {"ref_points": POINTS, "weights": 3}, "weights is 3, expected a weight of 0 or more for each objective"),
+    ("RNSGA2", {"ref_points": POINTS, "weights": [-1, 2]}, "weights is [-1, 2], expected a weight of 0 or more"),
+    ("RNSGA2", {"ref_points": [1, 2]}, "ref_points has shape (2,), expected rows of values"),
+    ("RNSGA2", {"ref_points": [[1, 2, 3]]}, "expected rows of 2 finite numbers"),
+    ("RNSGA3", {"ref_points": POINTS, "mu": 3}, "mu is 3.0, expected a number from 0 to 1 for "),
     ("RNSGA3", {"ref_points": POINTS, "pop_per_ref_point": 2.5}, "pop_per_ref_point is 2.5, expected a whole number"),
     ("DNSGA2", {"version": "C"}, "version is 'C'; expected one of A, B"),
-    ("DNSGA2", {"perc_detect_change": 2}, "perc_detect_change is 2.0, expected a number, 0 to 1"),
-    ("KGB", {"perc_diversity": 1.5}, "perc_diversity is 1.5, expected a number, 0 to 1"),
-    ("RVEA", {"adapt_freq": 0}, "adapt_freq is 0.0, expected a number, above 0, at most 1"),
-    ("NSGA2", {"n_offsprings": 10**6}, "n_offsprings is 1000000, expected a whole number, 1 to 100000"),
+    ("DNSGA2", {"perc_detect_change": 2}, "perc_detect_change is 2.0, expected a number from 0 to 1 for "),
+    ("KGB", {"perc_diversity": 1.5}, "perc_diversity is 1.5, expected a number from 0 to 1 for "),
+    ("RVEA", {"adapt_freq": 0}, "adapt_freq is 0.0, expected a number above 0, at most 1 for RVEA"),
+    ("NSGA2", {"n_offsprings": 10**6}, "n_offsprings is 1000000, expected a whole number of at least 1 and at most 100,000"),
     ("NSDE", {"variant": "DE/rnd/1/bin"}, "variant is 'DE/rnd/1/bin'; did you mean 'DE/rand/1/bin'?"),
     ("NSDE", {"variant": "DE/rand-to-best/2/exp"}, "did you mean 'DE/current-to-best/2/exp'?"),
     ("NSDE", {"variant": "DE/rand/0/bin"}, "did you mean 'DE/rand/1/bin'?"),
     ("NSDE", {"variant": "DE/rand/1/bun"}, "did you mean 'DE/rand/1/bin'?"),
     ("NSDE", {"variant": 3}, "variant is 3; expected one of DE/rand/1/bin, "),
     ("NSDE", {"de_repair": "bounce"}, "de_repair is 'bounce'; did you mean 'bounce-back'?"),
-    ("NSDE", {"CR": 2}, "CR is 2.0, expected a number, 0 to 1"),
+    ("NSDE", {"CR": 2}, "CR is 2.0, expected a number from 0 to 1 for "),
     ("NSDE", {"F": [0.2]}, "F is [0.2], expected a number above 0, at most 2, or a range such as [0.2, 0.8]"),
     ("NSDE", {"F": [0.8, 0.2]}, "F is [0.8, 0.2], expected"),
     ("NSDE", {"F": -3}, "F is -3, expected"),
-    ("NSDE", {"F": True}, "F is true, expected"),
+    ("NSDE", {"F": True}, "F is True, expected"),
 ]
 
 
@@ -260,6 +260,14 @@ def test_values_that_mean_nothing_are_refused(name, parameters, message):
     found = refusal({"algorithm": name, "pop_size": 20, "parameters": parameters})
     assert message in found
     assert found.startswith("algorithms[0]")
+    # Not by the study: whoever makes it is told the same.
+    problem = GridPathProblem(random_dense_grid(8, 0.2, 1), (0, 0), (7, 7))
+    with pytest.raises(CapabilityError) as error:
+        make_algorithm(name, problem, 20, **parameters)
+    said = str(error.value)
+    assert message.replace(".0, exp", ", exp") in said
+    # A study writes the whole numbers that stand for others as those.
+    assert found.replace(".0, expected", ", expected").endswith(said)
 
 
 def test_three_objectives_have_fewer_directions():

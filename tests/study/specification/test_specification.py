@@ -245,7 +245,14 @@ BAD = [
         "n_neighbors is '3', expected a whole",
     ),
     (ALGORITHM, ALGORITHM + "\nparameters = { seed = 3 }", 9, "seed is set by the seeds of the study"),
-    (ALGORITHM, ALGORITHM + "\nparameters = { survival = 3 }", 9, "object of Python"),
+    (ALGORITHM, ALGORITHM + "\nparameters = { survival = 3 }", 9, "survival is set by the key operators of the algorithm"),
+    (ALGORITHM, ALGORITHM + "\nparameters = { output = 3 }", 9, "object of Python"),
+    (
+        ALGORITHM,
+        ALGORITHM + '\noperators.survival = { class = "RankAndSmoothness", distinct = 1 }',
+        9,
+        "distinct is 1, exp",
+    ),
     (ALGORITHM, ALGORITHM + "\nparameters.verbose = true", 9, "changes no result"),
     (ALGORITHM, ALGORITHM + '\noperators = "papr"', 9, "did you mean 'paper'?"),
     (
@@ -254,7 +261,12 @@ BAD = [
         9,
         "did you mean 'PathMutation'?",
     ),
-    (ALGORITHM, ALGORITHM + '\noperators = { mutation = "EdgeFixing" }', 9, "mutation is 'EdgeFixing'"),
+    (
+        ALGORITHM,
+        ALGORITHM + '\noperators = { mutation = "EdgeFixing" }',
+        9,
+        "there is no mutation 'EdgeFixing'; expected one of",
+    ),
     (ALGORITHM, ALGORITHM + "\noperators.mutation = { margin = 3 }", 9, "mutation has no class"),
     (
         ALGORITHM,
@@ -279,7 +291,7 @@ BAD = [
         ALGORITHM,
         ALGORITHM + '\noperators.crossover = { class = "DiscreteSBX", prob = true }',
         9,
-        "prob is true, expected",
+        "prob is True, expected",
     ),
     (
         ALGORITHM,
@@ -288,8 +300,8 @@ BAD = [
         "prob_var is [1], exp",
     ),
     (ALGORITHM, ALGORITHM + '\noperators.crossover = "PointCrossover"', 9, "PointCrossover has no n_points, expected such as"),
-    ("pop_size = 8", "pop_size = 1", 9, "pop_size is 1, expected a whole number, 2 to 100000"),
-    ("pop_size = 8", "pop_size = 10_000_000", 9, "pop_size is 10000000, expected a whole number, 2 to 100000"),
+    ("pop_size = 8", "pop_size = 0", 9, "pop_size is 0, expected a whole number of at least 1 and at most 100,000"),
+    ("pop_size = 8", "pop_size = 10_000_000", 9, "pop_size is 10000000, expected a whole number of at least 1 and at"),
     (
         "pop_size = 8",
         "seeds = 5",
@@ -420,7 +432,7 @@ def test_to_dict_and_back(tmp_path):
 def test_errors_of_objects_name_the_place():
     with pytest.raises(StudyError, match=re.escape("random.p0: p0 is 2")):
         ProblemSpec(random={"size": 8, "p0": 2})
-    with pytest.raises(StudyError, match=re.escape("operators.mutation: mutation is 'No'")):
+    with pytest.raises(StudyError, match=re.escape("operators.mutation: there is no mutation 'No'")):
         AlgorithmSpec(algorithm="NSGA2", operators={"mutation": "No"})
     with pytest.raises(StudyError, match=re.escape("problems[0].start: start is 3")):
         Study(problems=[{"map": "x", "start": 3}], algorithms=[{"algorithm": "exact"}], seeds=1, budget={"generations": 1})

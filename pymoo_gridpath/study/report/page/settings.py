@@ -16,8 +16,7 @@ from pymoo_gridpath.study.report.statistics.summaries import quartiles
 from pymoo_gridpath.study.report.tables.summary import reference_phrase
 from pymoo_gridpath.study.report.tables.table import NOTHING, Table, count, significant, spread
 from pymoo_gridpath.study.specification import own
-from pymoo_gridpath.study.specification.kinds import is_of_paper
-from pymoo_gridpath.study.specification.operators import operator_classes
+from pymoo_gridpath.study.specification.kinds import is_of_paper, operators_of_package
 
 # Rows of the list of single problems.
 _MOST_ROWS = 40
@@ -156,7 +155,7 @@ def _operator(slot: str, single: Mapping[str, Any]) -> str:
     kind = "duplicates" if slot == "eliminate_duplicates" else slot
     if own.is_path(single["class"]):
         return f"{kind} {own.shown(single)}"
-    parameters = inspect.signature(operator_classes(slot)[single["class"]]).parameters
+    parameters = inspect.signature(operators_of_package()[single["class"]]).parameters
     arguments = {key: value for key, value in single.items() if key != "class" and value != parameters[key].default}
     return f"{kind} {single['class']}{f' ({_listed(arguments)})' if arguments else ''}"
 
