@@ -115,7 +115,7 @@ class ColumnPaths(Paths):
         """Number of horizontal and vertical steps, int, shape (N,)."""
         return np.abs(self._climb).sum(axis=1) + (self.frame.n_columns - 1) - self.n_diagonal
 
-    @property
+    @functools.cached_property
     def turn(self) -> np.ndarray:
         """Total turn in degrees, the sum of the absolute heading changes along the path; int, shape (N,)."""
         # In units of 45 degrees a step s has the heading -1, 0 or 1 and a climb of sign v the heading 2 v, so that the turn

@@ -288,8 +288,11 @@ class GridPathProblem(Problem):
     def _evaluate(self, x, out, *args, **kwargs):
         # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
         n_parts = min(max(1, round(len(x) * self.n_var / PART_SIZE)), max(1, len(x)))
-        parts = [self._measure(part) for part in np.array_split(x, n_parts)]
-        F, turn, interfering = (np.concatenate(values) for values in zip(*parts, strict=True))
+        if n_parts == 1:
+            F, turn, interfering = self._measure(x)
+        else:
+            parts = [self._measure(part) for part in np.array_split(x, n_parts)]
+            F, turn, interfering = (np.concatenate(values) for values in zip(*parts, strict=True))
         if self.obstacles == "penalty":
             F += np.outer(self.penalty * interfering, [objective.penalty_unit for objective in self.objectives])
         elif self.obstacles == "constraint":
