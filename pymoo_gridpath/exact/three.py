@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
@@ -161,7 +163,7 @@ class _Search:
 def _steps_alone(costs: Costs) -> Costs:
     """Return two costs that are the number of steps."""
     one = costs.take([0, 0])
-    return one._replace(step=np.ones_like(one.step), field=np.zeros_like(one.field), enter=None)
+    return dataclasses.replace(one, step=np.ones_like(one.step), field=np.zeros_like(one.field), enter=None)
 
 
 @kernel

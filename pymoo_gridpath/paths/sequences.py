@@ -70,7 +70,7 @@ def check_sequences(sequences: Sequences, n_cells: int) -> Sequences:
 
 
 def _for_kernels(values: np.ndarray) -> np.ndarray:
-    """Return numbers as kernels are compiled for: contiguous arrays that can be written into; they would be again for others."""
+    """Return numbers as kernels are compiled for: contiguous, and not read-only; for others they would be compiled again."""
     flags = values.flags
     if values.dtype == np.int64 and flags.c_contiguous and flags.writeable and type(values) is np.ndarray:
         return values
