@@ -13,8 +13,9 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
+from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.three import front_of_three
-from pymoo_gridpath.exact.two import Front, front_of_two
+from pymoo_gridpath.exact.two import front_of_two
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence
