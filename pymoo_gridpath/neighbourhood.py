@@ -17,7 +17,8 @@ HEADING_OF[HEADINGS[:, 1] + 1, HEADINGS[:, 0] + 1] = np.arange(8)
 #: Whether each heading is diagonal.
 DIAGONAL = np.arange(8) % 2 == 1
 
-_APART = np.abs(np.arange(8)[:, None] - np.arange(8)[None, :])
 
-#: The turn between headings in units of 45 degrees, int, shape (9, 8); row 8 is for a path that just starts.
-TURN_UNITS = np.concatenate([np.minimum(_APART, 8 - _APART), np.zeros((1, 8), dtype=int)])
+def turn_units() -> np.ndarray:
+    """Return the turn between headings in units of 45 degrees, int, shape (9, 8); row 8 is for a path that just starts."""
+    apart = np.abs(np.arange(8)[:, None] - np.arange(8)[None, :])
+    return np.concatenate([np.minimum(apart, 8 - apart), np.zeros((1, 8), dtype=int)])

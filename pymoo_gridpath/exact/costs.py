@@ -10,7 +10,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid
-from pymoo_gridpath.neighbourhood import DIAGONAL, HEADINGS, TURN_UNITS
+from pymoo_gridpath.neighbourhood import DIAGONAL, HEADINGS, turn_units
 from pymoo_gridpath.objectives import Objective, field_of, moves_of
 from pymoo_gridpath.search import Moves
 
@@ -29,6 +29,9 @@ _FINEST_DECIMAL = 10**9
 
 # Bits, from the first of the largest cost, that costs may have to be taken as they are; potentials of the package have 33.
 _BITS = 44
+
+#: What `turn_units` returns, worked out once.
+TURN_UNITS = turn_units()
 
 # No step turns by more than so many times 45 degrees.
 _MOST_TURNS = 4

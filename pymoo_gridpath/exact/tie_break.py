@@ -15,8 +15,8 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
-from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.neighbourhood import HEADING_OF, TURN_UNITS
+from pymoo_gridpath.exact.costs import TURN_UNITS, Costs
+from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.search import Moves
 
 # More than any path turns.
