@@ -63,6 +63,8 @@ _BRIEF = _Brief()
 
 def shown(value: Any) -> str:
     """Return a value as messages show it: one short printable line, whatever it is."""
+    if type(value) is str and len(value) < _MOST_SHOWN // 2 and value.isascii() and value.isprintable():
+        return repr(value)
     try:
         text = _BRIEF.repr(value)
     except Exception:

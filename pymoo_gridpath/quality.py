@@ -197,20 +197,12 @@ def hypervolume_ratio(F: Any, front: Any) -> float:
 def igd_plus(F: Any, front: Any) -> float:
     """Return the mean distance by which points of a front are missed, in objectives that are normalised by its range.
 
-    Parameters
-    ----------
-    F, front
-        As for `hypervolume_ratio`.
+    See `hypervolume_ratio` for the arguments, and what is raised.
 
     Returns
     -------
     float
         0 where every point of the front is reached; ``inf`` without points, where pymoo and moocore say 0.
-
-    Raises
-    ------
-    GridPathError
-        As `hypervolume_ratio`.
 
     References
     ----------
@@ -229,20 +221,12 @@ def igd_plus(F: Any, front: Any) -> float:
 def share_found(F: Any, front: Any) -> float:
     """Return the share of a front's points that are among the points, but for rounding (`SAME` of each objective's size).
 
-    Parameters
-    ----------
-    F, front
-        As for `hypervolume_ratio`.
+    See `hypervolume_ratio` for the arguments, and what is raised.
 
     Returns
     -------
     float
         0 to 1.
-
-    Raises
-    ------
-    GridPathError
-        As `hypervolume_ratio`.
 
     Examples
     --------

@@ -144,19 +144,7 @@ class FitnessTournament(TournamentSelection):
 
 
 def by_strength_turn_density(pop, P: np.ndarray, random_state=None, **kwargs) -> np.ndarray:
-    """Return the winners of tournaments between two; see `StrengthTournament`.
-
-    Parameters
-    ----------
-    pop : pymoo.core.population.Population
-    P : numpy.ndarray of int, shape (n_tournaments, 2)
-        Who meets whom.
-    random_state : numpy.random.Generator
-
-    Returns
-    -------
-    numpy.ndarray of int, shape (n_tournaments, 1)
-    """
+    """Return the winners of tournaments; see `StrengthTournament`, and `by_rank_turn_crowding` for the arguments."""
     assert random_state is not None
     CV, raw, turn, density = pop.get("CV", "SPEA_R", "turn", "SPEA_D")
     verdict = decide(P, CV[:, 0], compare(P, raw), compare(P, turn), compare(P, density))
@@ -164,7 +152,7 @@ def by_strength_turn_density(pop, P: np.ndarray, random_state=None, **kwargs) ->
 
 
 def by_fitness(pop, P: np.ndarray, random_state=None, **kwargs) -> np.ndarray:
-    """Return the winners of tournaments; see `FitnessTournament`, and `by_strength_turn_density` for the arguments."""
+    """Return the winners of tournaments; see `FitnessTournament`, and `by_rank_turn_crowding` for the arguments."""
     CV, fitness = pop.get("CV", "SPEA_F")
     verdict = decide(P, CV[:, 0], compare(P, fitness))
     return winners(P, verdict, draw_as_pymoo(verdict, random_state))

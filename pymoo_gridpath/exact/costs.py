@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +30,9 @@ _FINEST_DECIMAL = 10**9
 # Bits, from the first of the largest cost, that costs may have to be taken as they are; potentials of the package have 33.
 _BITS = 44
 
+#: What `turn_units` returns, worked out once.
+TURN_UNITS = turn_units()
+
 # No step turns by more than so many times 45 degrees.
 _MOST_TURNS = 4
 
@@ -43,7 +48,8 @@ def _direct_headings() -> np.ndarray:
 DIRECT = _direct_headings()
 
 
-class Costs(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Costs:
     """k objectives as costs of steps and of cells.
 
     Attributes
@@ -66,7 +72,7 @@ class Costs(NamedTuple):
     off: np.ndarray
     enter: np.ndarray | None
 
-    @property
+    @functools.cached_property
     def with_heading(self) -> bool:
         """Whether some cost depends on the heading before a step."""
         return bool((self.step[:, :8] != self.step[:, :1]).any())
@@ -76,7 +82,7 @@ class Costs(NamedTuple):
         """Whether each cost depends on the heading before a step, bool, shape (k,)."""
         return (self.step[:, :8] != self.step[:, :1]).any(axis=(1, 2))
 
-    @property
+    @functools.cached_property
     def on_the_spot(self) -> np.ndarray:
         """What turning from one heading to another costs, int64, shape (k, 8, 8)."""
         return self.step[:, :8] - self.step[:, 8:]
@@ -86,7 +92,7 @@ class Costs(NamedTuple):
         """Whether costs had to be rounded to whole numbers, bool, shape (k,)."""
         return self.off > 0
 
-    @property
+    @functools.cached_property
     def direct(self) -> np.ndarray:
         """`DIRECT` with -1 where one step may cost more than the two, int64, shape (8, 8).
 
@@ -120,9 +126,9 @@ class Costs(NamedTuple):
     def take(self, order) -> Costs:
         """Return the costs of some objectives, in that order."""
         order = list(order)
-        enter = None if self.enter is None else self.enter[order].copy()
+        enter = None if self.enter is None else self.enter.take(order, axis=0)
         enter = enter if enter is not None and enter.any() else None
-        return Costs(self.step[order].copy(), self.field[order].copy(), self.unit[order], self.off[order], enter)
+        return Costs(self.step.take(order, axis=0), self.field.take(order, axis=0), self.unit[order], self.off[order], enter)
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Return points, shape (N, k), in the units of the objectives: the same for equal sums in whatever unit."""
@@ -197,7 +203,7 @@ def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.n
         if not turn and pair[0] > 0.0 and pair[1] == SQRT2 * pair[0]:
             return _One(np.tile(_OCTILE, (9, 1)), nothing, float(pair[0]) / LENGTH_UNIT)
         if turn and not pair.any():
-            return _One(turn_units(), nothing, turn)
+            return _One(TURN_UNITS, nothing, turn)
     free = nothing if cells is None else np.where(usable, np.ravel(cells), 0.0)
     entries = np.empty((8, 0))
     if isinstance(steps, np.ndarray):
@@ -215,7 +221,7 @@ def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.n
     unit, rounded = _unit(values, total)
     straight, diagonal, turning = (round(float(value) / unit) for value in (*pair, turn))
     return _One(
-        np.where(DIAGONAL, diagonal, straight) + turning * turn_units(),
+        np.where(DIAGONAL, diagonal, straight) + turning * TURN_UNITS,
         np.rint(free / unit).astype(np.int64),
         unit,
         # Half a unit for the cell, half a one for the move, and half a one for each 45 degrees of turning.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,8 +13,9 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
+from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.three import front_of_three
-from pymoo_gridpath.exact.two import Front, front_of_two
+from pymoo_gridpath.exact.two import front_of_two
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence
@@ -112,7 +114,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     meter = Meter(budget or Budget())
     usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)
     parts = _search(problem, moves, usable, meter, set())
-    paths, F = _merged(problem, parts, early=bool(meter.message))
+    paths, F, X = _merged(problem, parts, early=bool(meter.message))
     longest = max(map(len, paths), default=0)
     if longest > most:
         whole = F
@@ -121,7 +123,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         if not meter.message:
             parts = _search(problem, moves, usable, meter, set(), most)
             within = within + parts if meter.message else parts
-        paths, F = _merged(problem, within, early=bool(meter.message))
+        paths, F, X = _merged(problem, within, early=bool(meter.message))
         # Other paths may have the same costs.
         if whole.shape == F.shape and np.allclose(whole, F, rtol=_EQUAL, atol=0.0):
             longest = max(map(len, paths))
@@ -140,7 +142,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         )
     else:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
-    X = problem.representation.from_sequences(_sequences(paths))
+    if X is None:
+        X = problem.representation.from_sequences(_sequences(paths))
     return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
 
 
@@ -230,7 +233,8 @@ def _front_of_short_paths(moves: Moves, costs: Costs, start: int, goal: int, mos
 def _three(costs: Costs) -> Costs:
     """Return one to three costs as three, with some that are nothing before the last, since turns come last."""
     place = [len(costs.step) - 1] * (3 - len(costs.step))
-    return costs._replace(
+    return dataclasses.replace(
+        costs,
         step=np.insert(costs.step, place, 0, axis=0),
         field=np.insert(costs.field, place, 0, axis=0),
         unit=np.insert(costs.unit, place, 1.0),
@@ -275,8 +279,10 @@ def _cheap_part(
     return moves.within(within), within
 
 
-def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return paths and objectives of what is non-dominated and keeps a potential limit, in order of the first objective.
+def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray], np.ndarray, np.ndarray | None]:
+    """Return paths, objectives and genes of what is non-dominated and keeps a potential limit, by the first objective.
+
+    There are no genes if one of the given paths was too long for a row.
 
     What was found ``early``, before the search was over, may have detours, which a monotone representation codes as the better
     direct way.
@@ -286,7 +292,8 @@ def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray],
     coding, longest = problem.representation, max(map(len, paths), default=0)
     if longest > max_cells(problem):
         coding = CellSequence(problem.grid, problem.start, problem.goal, longest)
-    F = problem.score(coding.decode(coding.from_sequences(_sequences(paths)))).reshape(-1, problem.n_obj)
+    X = coding.from_sequences(_sequences(paths))
+    F = problem.score(coding.decode(X)).reshape(-1, problem.n_obj)
     rounding = _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
     close = np.abs(F - expected) <= rounding
     if early and not close.all():
@@ -309,7 +316,7 @@ def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray],
     if problem.obstacles == "limit":
         k = problem.objective_names.index("vulnerability")
         keep = keep[problem.over_limit(F[keep, k]) <= 0]
-    return [paths[k] for k in keep], F[keep]
+    return [paths[k] for k in keep], F[keep], X[keep] if coding is problem.representation else None
 
 
 def _sequences(paths: list[np.ndarray]) -> Sequences:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import heapq
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
@@ -99,7 +100,8 @@ def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weigh
     del searches
     n_weights = _affordable(n_weights, bounds, costs, meter)
     weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
-    spent = np.stack(list(map_(lambda k: _spent(moves, costs, k, start, meter), range(2))))
+    backward = moves.backward()
+    spent = np.stack(list(map_(lambda k: _spent(moves, backward, costs, k, start, meter), range(2))))
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
     found, used = {left: first, right: last}, []
     # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
@@ -217,12 +219,12 @@ def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent:
     found = backward_costs(moves, step, field, goal, costs.with_heading, weighted, limit, meter.stop, enter)
     if meter.message:
         return None
-    point, path = _follow(moves, costs, costs._replace(step=step, field=field, enter=enter), found, start, goal)
+    point, path = _follow(moves, costs, dataclasses.replace(costs, step=step, field=field, enter=enter), found, start, goal)
     return found[0][0], point, path
 
 
-def _spent(moves: Moves, costs: Costs, k: int, start: int, meter: Meter) -> np.ndarray:
-    """Return lower bounds of one of the costs from the start to each cell, int64, shape (n_cells,)."""
+def _spent(moves: Moves, backward: Moves, costs: Costs, k: int, start: int, meter: Meter) -> np.ndarray:
+    """Return lower bounds of one of the costs from the start to each cell, by the moves taken backwards, shape (n_cells,)."""
     step = np.broadcast_to(costs.step[k].min(axis=0), (2, *costs.step.shape[1:])).copy()
     enter = None
     if costs.enter is not None:
@@ -233,7 +235,7 @@ def _spent(moves: Moves, costs: Costs, k: int, start: int, meter: Meter) -> np.n
             enter[:, leads, OPPOSITE[m]] = costs.enter[k, leads + moves.offsets[m], m]
     # The search enters the start instead of the cell that it set out from.
     field = np.stack([costs.field[k]] * 2)
-    ahead = backward_costs(moves.backward(), step, field, start, stop=meter.stop, enter=enter)[0][0]
+    ahead = backward_costs(backward, step, field, start, stop=meter.stop, enter=enter)[0][0]
     spent = np.minimum(ahead + costs.field[k] - costs.field[k, start], UNREACHABLE)
     spent[start] = 0
     return spent

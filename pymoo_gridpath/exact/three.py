@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import dataclasses
+from typing import ClassVar
+
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.exact.label_lists import covered, empty_lists, has_room, insert
-from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
-from pymoo_gridpath.exact.two import CLOSED_FULL, DONE, FOUND_FULL, HEAP_FULL, PAUSED, Front, grow
+from pymoo_gridpath.exact.labels import (
+    DONE,
+    LISTS_FULL,
+    N_CLOSED,
+    N_FOUND,
+    N_OPEN,
+    N_POPPED,
+    PAUSED,
+    Front,
+    LabelSearch,
+    close,
+    full,
+    is_detour,
+    load_of,
+)
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
-
-# Places in the array of counts.
-N_OPEN, N_CLOSED, N_FOUND, N_POPPED = range(4)
-
-# Why the kernel returned, besides the reasons that the search for two objectives has.
-ROWS_FULL = 5
-
-_POPS_AT_A_TIME = 2**17
+from pymoo_gridpath.search.heap import drop_first_of_four, push_four
 
 
 def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, most_steps: int | None = None) -> Front:
@@ -56,25 +65,23 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     return Front(search.paths() if meter.message else search.smoothest_paths(meter), search.points())
 
 
-class _Search:
-    """The arrays of one search, which grow between calls of the kernel."""
+class _Search(LabelSearch):
+    """The search, with a list of what is non-dominated for each state."""
+
+    growing: ClassVar[dict[int, str]] = LabelSearch.growing | {LISTS_FULL: "rows"}
+    pops_at_a_time = 2**17
 
     def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, most_steps: int | None):
-        self.moves, self.costs, self.start, self.goal = moves, costs, start, goal
+        super().__init__(moves, costs, start, goal, n_keys=4)
         self.n_headings = 8 if costs.with_heading else 1
         # Where any number of steps will do, none are counted.
         self.per_step, self.most_steps = (0, 0) if most_steps is None else (1, most_steps)
-        self.direct, self.on_the_spot = costs.direct, costs.on_the_spot
         bounds = [self._bound(costs.take([k, k]), meter) for k in range(3)]
         left = None if most_steps is None else self._bound(_steps_alone(costs), meter)
         self.bounds = np.stack([*bounds, np.zeros_like(bounds[0]) if left is None else left], axis=1)
         # The last list is that of the paths found.
         self.lists, self.rows, self.taken = empty_lists(len(self.bounds) + 1)
-        self.heap = np.empty((1024, 5), dtype=np.int64)
-        self.closed = np.empty((1024, 2), dtype=np.int32)
-        self.found = np.empty((64, 4), dtype=np.int64)
-        self.counts = np.zeros(4, dtype=np.int64)
-        self._open_first_steps()
+        self.begin()
 
     def _bound(self, costs: Costs, meter: Meter) -> np.ndarray:
         """Return the least cost from every state, where two costs are the same."""
@@ -82,147 +89,51 @@ class _Search:
         found = backward_costs(self.moves, costs.step, costs.field, self.goal, with_heading, stop=meter.stop, enter=costs.enter)
         return found[0][0] if with_heading else np.repeat(found[0][0], self.n_headings)
 
-    def _open_first_steps(self) -> None:
-        self.closed[0] = (self.start, -1)
-        self.counts[N_CLOSED] = 1
-        for m in range(8):
-            if self.moves.legal[self.start] >> m & 1:
-                cell = self.start + int(self.moves.offsets[m])
-                state = 8 * cell + m if self.costs.with_heading else cell
-                f = self.costs.step[:, 8, m] + self.costs.field[:, cell] + self.bounds[state, :3]
-                f += 0 if self.costs.enter is None else self.costs.enter[:, cell, m]
-                steps = self.per_step + self.bounds[state, 3]
-                if f.max() < UNREACHABLE and steps <= self.most_steps:
-                    load = (8 * cell + m) << 32
-                    push(self.heap, self.counts[N_OPEN], f[0], f[1], 2 * f[2] + (cell == self.goal), steps, load)
-                    self.counts[N_OPEN] += 1
+    def open_first(self, cell: int, heading: int, state: int) -> bool:
+        f = self.costs.step[:, 8, heading] + self.costs.field[:, cell] + self.bounds[state, :3]
+        f += 0 if self.costs.enter is None else self.costs.enter[:, cell, heading]
+        steps = self.per_step + self.bounds[state, 3]
+        if f.max() >= UNREACHABLE or steps > self.most_steps:
+            return False
+        load = load_of(cell, heading, 0)
+        push_four(self.heap, self.counts[N_OPEN], f[0], f[1], 2 * f[2] + (cell == self.goal), steps, load)
+        return True
 
-    def run(self, meter: Meter) -> None:
-        """Search until no label is left or a budget is used up."""
-        status = PAUSED
-        full = {HEAP_FULL: self.heap, CLOSED_FULL: self.closed, FOUND_FULL: self.found, ROWS_FULL: self.rows}
-        while status != DONE:
-            meter.check(self.n_labels, sum(array.nbytes for array in full.values()))
-            if meter.message:
-                return
-            status = search_three(
-                self.moves.legal,
-                self.moves.offsets,
-                self.costs.step,
-                self.costs.field,
-                self.costs.enter,
-                self.costs.with_heading,
-                self.on_the_spot,
-                self.direct,
-                self.bounds,
-                self.per_step,
-                self.most_steps,
-                self.start,
-                self.goal,
-                self.lists,
-                self.rows,
-                self.taken,
-                self.heap,
-                self.closed,
-                self.found,
-                self.counts,
-                meter.pops(self.n_labels, _POPS_AT_A_TIME),
-            )
-            meter.note(self.n_labels, sum(array.nbytes for array in full.values()))
-            if status in full:
-                grow(full[status])
+    def search(self, max_pops: int) -> int:
+        return search_three(
+            self.moves.legal,
+            self.moves.offsets,
+            self.costs.step,
+            self.costs.field,
+            self.costs.enter,
+            self.costs.with_heading,
+            self.costs.on_the_spot,
+            self.costs.direct,
+            self.bounds,
+            self.per_step,
+            self.most_steps,
+            self.start,
+            self.goal,
+            self.lists,
+            self.rows,
+            self.taken,
+            self.heap,
+            self.closed,
+            self.found,
+            self.counts,
+            max_pops,
+        )
 
     @property
     def n_fixed(self) -> int:
         """Bytes of the arrays whose size is that of the grid."""
         return self.bounds.nbytes + self.lists.nbytes + self.costs.nbytes
 
-    @property
-    def n_labels(self) -> int:
-        """Labels open and closed."""
-        return int(self.counts[N_OPEN] + self.counts[N_CLOSED])
-
-    def points(self) -> np.ndarray:
-        """Return the costs of the paths found, int64, shape (N, 3)."""
-        return self.found[: self.counts[N_FOUND], 1:].copy()
-
-    def paths(self) -> list[np.ndarray]:
-        """Return the cells of the paths found."""
-        return traced_paths(self.closed, self.found[: self.counts[N_FOUND], 0])
-
-    def smoothest_paths(self, meter: Meter) -> list[np.ndarray]:
-        """Return the cells of the paths found, or of better ones with the same costs."""
-        # What the search alone needed has served.
-        self.heap = self.rows = self.heap[:0].copy()
-        closed, ends = self.closed[: self.counts[N_CLOSED]], self.found[: self.counts[N_FOUND], 0]
-        return smoothest_paths(self.moves, self.costs, closed, ends, meter)
-
 
 def _steps_alone(costs: Costs) -> Costs:
     """Return two costs that are the number of steps."""
     one = costs.take([0, 0])
-    return one._replace(step=np.ones_like(one.step), field=np.zeros_like(one.field), enter=None)
-
-
-@kernel
-def before(a, i, first, second, third, fourth):
-    """Whether entry i of a heap comes before four keys."""
-    if a[i, 0] != first:
-        return a[i, 0] < first
-    if a[i, 1] != second:
-        return a[i, 1] < second
-    if a[i, 2] != third:
-        return a[i, 2] < third
-    return a[i, 3] < fourth
-
-
-@kernel
-def move(heap, source, target):
-    """Copy an entry of a heap."""
-    for k in range(5):
-        heap[target, k] = heap[source, k]
-
-
-@kernel
-def fill(heap, i, first, second, third, fourth, load):
-    """Write an entry of a heap."""
-    heap[i, 0] = first
-    heap[i, 1] = second
-    heap[i, 2] = third
-    heap[i, 3] = fourth
-    heap[i, 4] = load
-
-
-@kernel
-def push(heap, n, first, second, third, fourth, load):
-    """Add an entry to the ``n`` that a heap of four keys holds."""
-    i = n
-    while i > 0:
-        up = (i - 1) >> 1
-        if before(heap, up, first, second, third, fourth):
-            break
-        move(heap, up, i)
-        i = up
-    fill(heap, i, first, second, third, fourth, load)
-
-
-@kernel
-def drop_first(heap, n):
-    """Remove the least entry, ``heap[0]``, of the ``n`` that a heap of four keys holds."""
-    last = n - 1
-    first, second, third, fourth, load = heap[last, 0], heap[last, 1], heap[last, 2], heap[last, 3], heap[last, 4]
-    i = 0
-    while True:
-        down = 2 * i + 1
-        if down >= last:
-            break
-        if down + 1 < last and before(heap, down + 1, heap[down, 0], heap[down, 1], heap[down, 2], heap[down, 3]):
-            down += 1
-        if not before(heap, down, first, second, third, fourth):
-            break
-        move(heap, down, i)
-        i = down
-    fill(heap, i, first, second, third, fourth, load)
+    return dataclasses.replace(one, step=np.ones_like(one.step), field=np.zeros_like(one.field), enter=None)
 
 
 @kernel
@@ -264,13 +175,9 @@ def search_three(
     start, goal : int
     lists, rows, taken
         Of (g2, g3, steps) closed at each state and, the last list, of (f2, f3, 0) of the paths found; see `empty_lists`.
-    heap : int64, shape (n, 5)
-        Open labels: f1, f2, ``2 * f3`` (plus 1 at the goal, which so comes after all that is equal, see `smoothest_paths`), the
-        least steps of the whole path, and ``(8 * cell + heading) << 32 | parent``.
-    closed : int32, shape (n, 2)
-        Closed labels: cell and number of the parent.
-    found : int64, shape (n, 4)
-        Numbers of the closed labels that are non-dominated paths, and their costs.
+    heap, closed, found
+        See `LabelSearch`; keys are f1, f2, ``2 * f3`` (plus 1 at the goal, which so comes after all that is equal, see
+        `smoothest_paths`), and the least steps of the whole path.
     counts : int64, shape (4,)
         State of the search, changed in place like all arrays from ``lists`` on.
     max_pops : int
@@ -280,18 +187,12 @@ def search_three(
     status = DONE
     pops = 0
     while n > 0:
-        if n + 8 > len(heap):
-            status = HEAP_FULL
-            break
-        if n_closed >= len(closed):
-            status = CLOSED_FULL
-            break
-        if counts[N_FOUND] >= len(found):
-            status = FOUND_FULL
+        status = full(n, n_closed, counts[N_FOUND], heap, closed, found)
+        if status != DONE:
             break
         # Lists of the eight headings at most.
         if not has_room(rows, taken, 8):
-            status = ROWS_FULL
+            status = LISTS_FULL
             break
         if pops >= max_pops:
             status = PAUSED
@@ -299,7 +200,7 @@ def search_three(
         pops += 1
         f1, f2, f3, load = heap[0, 0], heap[0, 1], heap[0, 2] >> 1, heap[0, 4]
         all_steps = heap[0, 3]
-        drop_first(heap, n)
+        drop_first_of_four(heap, n)
         n -= 1
         heading = (load >> 32) & 7
         cell = load >> 35
@@ -309,8 +210,7 @@ def search_three(
         steps = all_steps - bounds[state, 3]
         if covered(lists, rows, state, g2, g3, steps) or covered(lists, rows, ends, f2, f3, 0):
             continue
-        closed[n_closed, 0] = cell
-        closed[n_closed, 1] = load & 0xFFFFFFFF
+        close(closed, n_closed, load)
         if cell == goal:
             insert(lists, rows, taken, ends, f2, f3, 0)
             found[counts[N_FOUND], 0] = n_closed
@@ -335,8 +235,7 @@ def search_three(
         for m in range(8):
             if not (legal[cell] >> m) & 1:
                 continue
-            straight = direct[heading, m]
-            if straight == 8 or (straight >= 0 and (from_before >> straight) & 1):
+            if is_detour(direct, heading, m, from_before):
                 continue
             next_cell = cell + offsets[m]
             if next_cell == start:
@@ -360,8 +259,8 @@ def search_three(
             next_f3 = next3 + bounds[next_state, 2]
             if covered(lists, rows, ends, next_f2, next_f3, 0):
                 continue
-            load = (8 * next_cell + m) << 32 | n_closed
-            push(heap, n, next_f1, next_f2, 2 * next_f3 + (next_cell == goal), next_all, load)
+            load = load_of(next_cell, m, n_closed)
+            push_four(heap, n, next_f1, next_f2, 2 * next_f3 + (next_cell == goal), next_all, load)
             n += 1
         n_closed += 1
     counts[N_OPEN], counts[N_CLOSED] = n, n_closed

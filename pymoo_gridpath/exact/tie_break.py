@@ -15,8 +15,8 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
-from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.neighbourhood import HEADING_OF, turn_units
+from pymoo_gridpath.exact.costs import TURN_UNITS, Costs
+from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.search import Moves
 
 # More than any path turns.
@@ -81,7 +81,7 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
             order = np.argsort(steps, kind="stable")
         turn = np.full((len(labels), 8), _NEVER, dtype=np.int32)
         before = np.full((len(labels), 8), -1, dtype=np.int8)
-        _least_turns(order, parents, slot[start], turn_units(), turn, before)
+        _least_turns(order, parents, slot[start], TURN_UNITS, turn, before)
         cells = cell[labels]
         paths += [_trace(cells, parents, slot[start], turn, before, slot[k]) for k in end[len(paths) : len(paths) + n]]
         slot[labels] = -1

@@ -12,23 +12,31 @@ label is dominated), with three additions that leave the result as it is:
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.labels import (
+    DONE,
+    N_CLOSED,
+    N_FOUND,
+    N_OPEN,
+    N_POPPED,
+    PAUSED,
+    Front,
+    LabelSearch,
+    close,
+    full,
+    is_detour,
+    load_of,
+)
 from pymoo_gridpath.exact.supported import Hull, supported_points
-from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
 
-# Why a kernel returned.
-DONE, HEAP_FULL, CLOSED_FULL, FOUND_FULL, PAUSED = range(5)
-
-# Places in the array of counts.
-N_OPEN, N_CLOSED, N_FOUND, N_POPPED, BEST2, NEXT_CORNER, GAP = range(7)
+# Places in the array of counts, besides those that every label search has.
+BEST2, NEXT_CORNER, GAP = range(4, 7)
 
 # Columns of the array of states.
 LEAST2, BOUND1, BOUND2, FIELD1, FIELD2 = range(5)
@@ -43,24 +51,6 @@ _LARGE = 2**17
 
 # Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.
 _CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
-
-_POPS_AT_A_TIME = 2**18
-_GROWTH = 1.25
-
-
-class Front(NamedTuple):
-    """Non-dominated paths in ascending order of the first objective.
-
-    Attributes
-    ----------
-    paths : list of numpy.ndarray
-        Indices of the cells of each, from the start to the goal.
-    points : numpy.ndarray of int64, shape (N, k)
-        Their costs, without that of the start cell.
-    """
-
-    paths: list[np.ndarray]
-    points: np.ndarray
 
 
 def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
@@ -91,8 +81,8 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     for tolerance in (*tolerances, 0.0):
         if meter.message:
             break
-        search = _Search(moves, costs, start, goal, hull, known)
-        search.run(meter, tolerance)
+        search = _Search(moves, costs, start, goal, hull, known, tolerance)
+        search.run(meter)
         found.append(Front(search.paths(), search.points()))
         known = _non_dominated(np.concatenate([known, found[-1].points]))
     return merged(found) if meter.message else Front(search.smoothest_paths(meter), search.points())
@@ -114,11 +104,14 @@ def _non_dominated(points: np.ndarray) -> np.ndarray:
     return points[points[:, 1] < best_before]
 
 
-class _Search:
-    """The arrays of one search, which grow between calls of the kernel."""
+class _Search(LabelSearch):
+    """One pass of the search."""
 
-    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, hull: Hull, known: np.ndarray):
-        self.moves, self.costs, self.start, self.goal = moves, costs, start, goal
+    pops_at_a_time = 2**18
+
+    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, hull: Hull, known: np.ndarray, tolerance: float):
+        super().__init__(moves, costs, start, goal, n_keys=2, n_counts=7)
+        self.hull, self.tolerance = hull, tolerance
         n_states = hull.bounds.shape[1]
         self.states = np.empty((n_states, 5), dtype=np.int64)
         self.states[:, LEAST2] = UNREACHABLE
@@ -130,103 +123,46 @@ class _Search:
         if costs.enter is not None and repeat == 8:
             self.states[:, FIELD1 : FIELD2 + 1] += costs.enter.reshape(2, n_states).T
             self.enter = None
-        self.direct, self.on_the_spot = costs.direct, costs.on_the_spot
-        self.hull = hull
+        if not costs.with_heading:
+            self.states[start, LEAST2] = 0
         self.corners, self.ceilings, self.marks = _corners(hull, known)
-        self.heap = np.empty((1024, 3), dtype=np.int64)
-        self.closed = np.empty((1024, 2), dtype=np.int32)
-        self.found = np.empty((64, 3), dtype=np.int64)
-        self.counts = np.zeros(7, dtype=np.int64)
         self.counts[BEST2] = UNREACHABLE
-        self._open_first_steps()
+        self.begin()
 
-    def _open_first_steps(self) -> None:
-        self.closed[0] = (self.start, -1)
-        self.counts[N_CLOSED] = 1
-        with_heading = self.costs.with_heading
-        if not with_heading:
-            self.states[self.start, LEAST2] = 0
-        for m in range(8):
-            if self.moves.legal[self.start] >> m & 1:
-                cell = self.start + int(self.moves.offsets[m])
-                state = self.states[8 * cell + m if with_heading else cell]
-                first = self.costs.step[:, 8, m] + (0 if self.enter is None else self.enter[:, cell, m])
-                f1 = first[0] + state[FIELD1] + state[BOUND1]
-                f2 = first[1] + state[FIELD2] + state[BOUND2]
-                if f1 < UNREACHABLE:
-                    push(self.heap, self.counts[N_OPEN], f1, 2 * f2 + (cell == self.goal), (8 * cell + m) << 32)
-                    self.counts[N_OPEN] += 1
+    def open_first(self, cell: int, heading: int, state: int) -> bool:
+        first = self.costs.step[:, 8, heading] + (0 if self.enter is None else self.enter[:, cell, heading])
+        f1, f2 = first + self.states[state, FIELD1 : FIELD2 + 1] + self.states[state, BOUND1 : BOUND2 + 1]
+        if f1 >= UNREACHABLE:
+            return False
+        push(self.heap, self.counts[N_OPEN], f1, 2 * f2 + (cell == self.goal), load_of(cell, heading, 0))
+        return True
 
-    def run(self, meter: Meter, tolerance: float) -> None:
-        """Search until no label is left or a budget is used up."""
-        status = PAUSED
-        while status != DONE:
-            meter.check(self.n_labels, self.nbytes)
-            if meter.message:
-                return
-            status = search_two(
-                self.moves.legal,
-                self.moves.offsets,
-                self.costs.step,
-                self.enter,
-                self.costs.with_heading,
-                self.on_the_spot,
-                self.direct,
-                self.states,
-                self.goal,
-                self.hull.weights,
-                self.hull.weighted,
-                self.hull.column,
-                self.corners,
-                self.ceilings,
-                self.marks,
-                self.heap,
-                self.closed,
-                self.found,
-                self.counts,
-                self.hull.points[0, 1],
-                self.hull.points[-1, 1],
-                tolerance,
-                meter.pops(self.n_labels, _POPS_AT_A_TIME),
-            )
-            meter.note(self.n_labels, self.nbytes)
-            if status == HEAP_FULL:
-                grow(self.heap)
-            elif status == CLOSED_FULL:
-                grow(self.closed)
-            elif status == FOUND_FULL:
-                grow(self.found)
-
-    @property
-    def n_labels(self) -> int:
-        """Labels open and closed."""
-        return int(self.counts[N_OPEN] + self.counts[N_CLOSED])
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of the arrays that grow with the labels."""
-        return self.heap.nbytes + self.closed.nbytes + self.found.nbytes
-
-    def points(self) -> np.ndarray:
-        """Return the costs of the paths found, int64, shape (N, 2)."""
-        return self.found[: self.counts[N_FOUND], 1:].copy()
-
-    def paths(self) -> list[np.ndarray]:
-        """Return the cells of the paths found."""
-        return traced_paths(self.closed, self.found[: self.counts[N_FOUND], 0])
-
-    def smoothest_paths(self, meter: Meter) -> list[np.ndarray]:
-        """Return the cells of the paths found, or of better ones with the same costs."""
-        # The labels that are still open have served.
-        self.heap = np.empty((0, 3), dtype=np.int64)
-        closed, ends = self.closed[: self.counts[N_CLOSED]], self.found[: self.counts[N_FOUND], 0]
-        return smoothest_paths(self.moves, self.costs, closed, ends, meter)
-
-
-def grow(array: np.ndarray) -> None:
-    """Give an array a quarter more rows, without a copy beside it where the system can do so."""
-    rows = int(len(array) * _GROWTH) + 64
-    array.resize((rows, *array.shape[1:]), refcheck=False)
+    def search(self, max_pops: int) -> int:
+        return search_two(
+            self.moves.legal,
+            self.moves.offsets,
+            self.costs.step,
+            self.enter,
+            self.costs.with_heading,
+            self.costs.on_the_spot,
+            self.costs.direct,
+            self.states,
+            self.goal,
+            self.hull.weights,
+            self.hull.weighted,
+            self.hull.column,
+            self.corners,
+            self.ceilings,
+            self.marks,
+            self.heap,
+            self.closed,
+            self.found,
+            self.counts,
+            self.hull.points[0, 1],
+            self.hull.points[-1, 1],
+            self.tolerance,
+            max_pops,
+        )
 
 
 def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -325,7 +261,7 @@ def search_two(
 ):
     """Pop labels in ascending order of (f1, f2) until none is left, an array is full, or ``max_pops`` have been popped.
 
-    A label is a path from the start to a cell; f is its cost g so far plus the lower bound of the rest.
+    f of a label is its cost g so far plus the lower bound of the rest.
 
     Parameters
     ----------
@@ -344,13 +280,9 @@ def search_two(
         The goal cell.
     weights, weighted, column, corners, ceilings, marks
         See `Hull` and `_corners`.
-    heap : int64, shape (n, 3)
-        Open labels: f1, ``2 * f2`` (plus 1 at the goal, which so comes after all that is equal, see `smoothest_paths`) and
-        ``(8 * cell + heading) << 32 | parent``.
-    closed : int32, shape (n, 2)
-        Closed labels: cell and number of the parent.
-    found : int64, shape (n, 3)
-        Numbers of the closed labels that are non-dominated paths, and their costs.
+    heap, closed, found
+        See `LabelSearch`; keys are f1 and ``2 * f2`` (plus 1 at the goal, which so comes after all that is equal, see
+        `smoothest_paths`).
     counts : int64, shape (7,)
         State of the search, changed in place like all arrays from ``ceilings`` on, and ``states``.
     most_f2, least_f2 : int
@@ -366,14 +298,8 @@ def search_two(
     status = DONE
     pops = 0
     while n > 0:
-        if n + 8 > len(heap):
-            status = HEAP_FULL
-            break
-        if n_closed >= len(closed):
-            status = CLOSED_FULL
-            break
-        if counts[N_FOUND] >= len(found):
-            status = FOUND_FULL
+        status = full(n, n_closed, counts[N_FOUND], heap, closed, found)
+        if status != DONE:
             break
         if pops >= max_pops:
             status = PAUSED
@@ -407,8 +333,7 @@ def search_two(
                 if turned < states[8 * cell + h, LEAST2] and on_the_spot[0, heading, h] == 0:
                     states[8 * cell + h, LEAST2] = turned
         states[state, LEAST2] = g2
-        closed[n_closed, 0] = cell
-        closed[n_closed, 1] = load & 0xFFFFFFFF
+        close(closed, n_closed, load)
         if cell == goal:
             best2 = g2
             counts[BEST2] = g2
@@ -427,8 +352,7 @@ def search_two(
         for m in range(8):
             if not (steps >> m) & 1:
                 continue
-            straight = direct[heading, m]
-            if straight == 8 or (straight >= 0 and (from_before >> straight) & 1):
+            if is_detour(direct, heading, m, from_before):
                 continue
             next_cell = cell + offsets[m]
             next_state = 8 * next_cell + m if with_heading else next_cell
@@ -450,7 +374,7 @@ def search_two(
                 next_f1, next_f2, next1, next2, next_state, weighted, column, weights, ceilings, marks, from_gap
             )
             if next_gap >= 0:
-                push(heap, n, next_f1, 2 * next_f2 + (next_cell == goal), (8 * next_cell + m) << 32 | n_closed)
+                push(heap, n, next_f1, 2 * next_f2 + (next_cell == goal), load_of(next_cell, m, n_closed))
                 n += 1
         n_closed += 1
     counts[N_OPEN], counts[N_CLOSED] = n, n_closed

@@ -60,7 +60,7 @@ class ArrayPopulation(Population):
                     setattr(individual, key, value)
             else:
                 for individual, value in zip(individuals, values, strict=True):
-                    own = vars(individual)
+                    own = individual.__dict__
                     (own if key in own else individual.data)[key] = value
         return self
 
@@ -73,7 +73,7 @@ def _read(individuals: list, key: str) -> list:
     if individuals and hasattr(type(individuals[0]), key):
         return list(map(attrgetter(key), individuals))
     # What others have set on an individual itself goes before what survival and evaluation keep in its data.
-    return [vars(individual)[key] if key in vars(individual) else individual.data.get(key) for individual in individuals]
+    return [own[key] if key in (own := individual.__dict__) else individual.data.get(key) for individual in individuals]
 
 
 def _one_each(values, n: int) -> list:

@@ -94,7 +94,7 @@ class Paths(ABC):
         """Length in cells: straight steps count 1, diagonal ones sqrt(2); float, shape (N,)."""
         return self.n_straight + SQRT2 * self.n_diagonal
 
-    @property
+    @functools.cached_property
     def turn(self) -> np.ndarray:
         """Total turn in degrees, the sum of the absolute heading changes along the path; int, shape (N,)."""
         offsets = self.sequences.offsets

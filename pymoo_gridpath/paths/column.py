@@ -115,17 +115,16 @@ class ColumnPaths(Paths):
         """Number of horizontal and vertical steps, int, shape (N,)."""
         return np.abs(self._climb).sum(axis=1) + (self.frame.n_columns - 1) - self.n_diagonal
 
-    @property
+    @functools.cached_property
     def turn(self) -> np.ndarray:
         """Total turn in degrees, the sum of the absolute heading changes along the path; int, shape (N,)."""
         # In units of 45 degrees a step s has the heading -1, 0 or 1 and a climb of sign v the heading 2 v, so that the turn
         # between them is |2 v - s| = 2 - v s. No two headings differ by more than 180 degrees.
         step, sign = self._step, np.sign(self._climb).astype(np.int8)
-        climbing = sign != 0
-        units = 2 * (climbing[:, 1:].sum(axis=1) + climbing[:, :-1].sum(axis=1))
-        units -= (step * (sign[:, 1:] + sign[:, :-1])).sum(axis=1)
-        units += (np.abs(step[:, 1:] - step[:, :-1]) * ~climbing[:, 1:-1]).sum(axis=1)
-        return TURN_UNIT * units
+        climbing = np.abs(sign)
+        units = 2 * (climbing[:, 1:] + climbing[:, :-1]) - step * (sign[:, 1:] + sign[:, :-1])
+        units[:, 1:] += np.abs(step[:, 1:] - step[:, :-1]) * (1 - climbing[:, 1:-1])
+        return TURN_UNIT * units.sum(axis=1, dtype=np.int64)
 
     def total(self, field: np.ndarray | BoxedField) -> np.ndarray:
         """Return the sum of a field over the visited cells, start and goal included.

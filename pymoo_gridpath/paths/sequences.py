@@ -64,7 +64,14 @@ def check_sequences(sequences: Sequences, n_cells: int) -> Sequences:
     cells = checks.array("cells", cells, (None,), "iu", expected=expected)
     offsets = checks.array("offsets", offsets, (None,), "iu", expected=expected)
     rising = len(offsets) and offsets[0] == 0 and offsets[-1] == len(cells) and (offsets[1:] >= offsets[:-1]).all()
-    if not rising or (len(cells) and not 0 <= cells.min() <= cells.max() < n_cells):
+    if not rising or not checks.within(cells, 0, n_cells - 1):
         raise GridPathError(f"sequences hold other numbers, expected {expected}")
-    # Kernels are compiled for contiguous arrays that can be written into, and would be again for others.
-    return Sequences(*(np.require(values, np.int64, ("C", "W")) for values in (cells, offsets)))
+    return Sequences(_for_kernels(cells), _for_kernels(offsets))
+
+
+def _for_kernels(values: np.ndarray) -> np.ndarray:
+    """Return numbers as kernels are compiled for: contiguous, and not read-only; for others they would be compiled again."""
+    flags = values.flags
+    if values.dtype == np.int64 and flags.c_contiguous and flags.writeable and type(values) is np.ndarray:
+        return values
+    return np.require(values, np.int64, ("C", "W"))

@@ -15,7 +15,7 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarnin
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.objectives import Objective, boxed_field_of, make_objectives, prepared, visiting_costs
-from pymoo_gridpath.paths import check_paths
+from pymoo_gridpath.paths import Paths, check_paths
 from pymoo_gridpath.paths.frame import Axis, check_axis
 from pymoo_gridpath.representations import Representation, default_representation, make_representation
 from pymoo_gridpath.representations.base import check_representation
@@ -262,7 +262,10 @@ class GridPathProblem(Problem):
 
     def score(self, paths) -> np.ndarray:
         """Return the plain objectives of paths, without any penalty, float, shape (N, n_obj)."""
-        check_paths(paths)
+        return self._without_nan(self._scores(check_paths(paths)))
+
+    def _scores(self, paths: Paths) -> np.ndarray:
+        """Return what `score` does, NaN included."""
         F = np.empty((len(paths), self.n_obj))
         for k, (objective, prepared_) in enumerate(zip(self.objectives, self._prepared, strict=True)):
             values = objective(paths, prepared_)
@@ -275,7 +278,11 @@ class GridPathProblem(Problem):
                     f"{counted(len(paths), 'path')}, expected one number a path"
                 )
             F[:, k] = values
-        # A minimum is NaN if a number is.
+        return F
+
+    def _without_nan(self, F: np.ndarray) -> np.ndarray:
+        """Return scores if they are numbers."""
+        # A minimum is NaN if one of them is.
         if F.size and np.isnan(F.min()):
             i, k = np.argwhere(np.isnan(F))[0]
             raise GridPathError(f"the objective {shown(self.objective_names[k])} returned NaN for path {i}, expected a number")
@@ -292,8 +299,12 @@ class GridPathProblem(Problem):
     def _evaluate(self, x, out, *args, **kwargs):
         # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
         n_parts = min(max(1, round(len(x) * self.n_var / PART_SIZE)), max(1, len(x)))
-        parts = [self._measure(part) for part in np.array_split(x, n_parts)]
-        F, turn, interfering = (np.concatenate(values) for values in zip(*parts, strict=True))
+        if n_parts == 1:
+            F, turn, interfering = self._measure(x)
+        else:
+            parts = [self._measure(part) for part in np.array_split(x, n_parts)]
+            F, turn, interfering = (np.concatenate(values) for values in zip(*parts, strict=True))
+        self._without_nan(F)
         if self.obstacles == "penalty":
             F += np.outer(self.penalty * interfering, [objective.penalty_unit for objective in self.objectives])
         elif self.obstacles == "constraint":
@@ -325,8 +336,8 @@ class GridPathProblem(Problem):
         )
 
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        paths = self.decode(X)
-        return self.score(paths), paths.turn, paths.interfering_cells
+        paths = check_paths(self.decode(X))
+        return self._scores(paths), paths.turn, paths.interfering_cells
 
 
 def _maker_without_repair(algorithm) -> str:

@@ -263,7 +263,9 @@ class Representation(ABC):
                 )
             X = X if self.vtype is float else np.rint(X)
         kind = float if self.vtype is float else np.int64
-        return np.clip(X, self.xl, self.xu).astype(kind, order="C", copy=False)
+        # What `numpy.clip` does, in less time.
+        within = np.maximum(X, self.xl)
+        return np.minimum(within, self.xu, out=within, casting="unsafe").astype(kind, order="C", copy=False)
 
     # -- what codings use -------------------------------------------------------------------------------------------------
 

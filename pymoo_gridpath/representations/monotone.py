@@ -107,7 +107,9 @@ class MonotoneRepresentation(Representation):
         # A path is never back in a column that it left, so each run of equal columns is one column of one path.
         enters = first | (np.diff(column, prepend=-1) != 0)
         leaves = np.roll(enters, -1)
-        return ColumnPaths(frame, row[enters].astype(np.int32).reshape(shape), row[leaves].astype(np.int32).reshape(shape))
+        return ColumnPaths._unchecked(
+            frame, row[enters].astype(np.int32).reshape(shape), row[leaves].astype(np.int32).reshape(shape)
+        )
 
     def _own(self, paths: ColumnPaths) -> ColumnPaths:
         """Return paths if they are of this frame."""

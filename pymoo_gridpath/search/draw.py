@@ -46,25 +46,14 @@ def paths_through(
 ) -> Sequences:
     """Return paths through given cells, along trees of cheapest routes from the start and to the goal.
 
+    See `cheapest_paths` for what is not listed, with a row of ``weights`` and ``noise`` for each of T trees.
+
     Parameters
     ----------
-    terrain : Terrain
-    moves : Moves
-        What it was made of.
     points : numpy.ndarray of int64, shape (N,)
         Useful cells of the terrain.
     trees : numpy.ndarray of int64, shape (N, 2)
         Numbers, from 0 to T - 1, of the trees that lead to the cell and from it.
-    weights : numpy.ndarray of int64, shape (T, K)
-    noise : numpy.ndarray of int64, shape (T, 3)
-        See `find_route`, as for ``weights``.
-    max_cells : int
-        A path of more cells is replaced by a shortest one.
-
-    Returns
-    -------
-    Sequences
-        N legal paths.
     """
     heads = _branches(terrain, points, trees[:, 0], weights, noise)
     tails = _branches(backwards(terrain), points, trees[:, 1], weights, noise)

@@ -1,7 +1,8 @@
-"""A binary heap in one array, for kernels.
+"""Binary heaps in one array, for kernels.
 
-An entry is a row of three whole numbers, compared by the first and then by the second; the third is its load. The kernels
-only move entries: whoever calls them keeps the count and sees that there is room.
+An entry is a row of whole numbers, its keys, compared one after another, and its load. The kernels only move entries: whoever
+calls them keeps the count and sees that there is room. There is a heap of two keys, in which of equal entries the first stays
+before, and one of four.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from pymoo_gridpath.compiled import kernel
 
 @kernel
 def push(heap, n, first, second, load):
-    """Add an entry to the ``n`` that the heap holds."""
+    """Add an entry to the ``n`` that a heap of two keys holds."""
     i = n
     while i > 0:
         up = (i - 1) >> 1
@@ -28,7 +29,7 @@ def push(heap, n, first, second, load):
 
 @kernel
 def drop_first(heap, n):
-    """Remove the least entry, ``heap[0]``, of the ``n`` that the heap holds."""
+    """Remove the least entry, ``heap[0]``, of the ``n`` that a heap of two keys holds."""
     last = n - 1
     first = heap[last, 0]
     second = heap[last, 1]
@@ -52,3 +53,64 @@ def drop_first(heap, n):
     heap[i, 0] = first
     heap[i, 1] = second
     heap[i, 2] = load
+
+
+@kernel
+def _before(a, i, first, second, third, fourth):
+    """Whether entry i of a heap comes before four keys."""
+    if a[i, 0] != first:
+        return a[i, 0] < first
+    if a[i, 1] != second:
+        return a[i, 1] < second
+    if a[i, 2] != third:
+        return a[i, 2] < third
+    return a[i, 3] < fourth
+
+
+@kernel
+def _move(heap, source, target):
+    """Copy an entry of a heap."""
+    for k in range(5):
+        heap[target, k] = heap[source, k]
+
+
+@kernel
+def _fill(heap, i, first, second, third, fourth, load):
+    """Write an entry of a heap."""
+    heap[i, 0] = first
+    heap[i, 1] = second
+    heap[i, 2] = third
+    heap[i, 3] = fourth
+    heap[i, 4] = load
+
+
+@kernel
+def push_four(heap, n, first, second, third, fourth, load):
+    """Add an entry to the ``n`` that a heap of four keys holds."""
+    i = n
+    while i > 0:
+        up = (i - 1) >> 1
+        if _before(heap, up, first, second, third, fourth):
+            break
+        _move(heap, up, i)
+        i = up
+    _fill(heap, i, first, second, third, fourth, load)
+
+
+@kernel
+def drop_first_of_four(heap, n):
+    """Remove the least entry, ``heap[0]``, of the ``n`` that a heap of four keys holds."""
+    last = n - 1
+    first, second, third, fourth, load = heap[last, 0], heap[last, 1], heap[last, 2], heap[last, 3], heap[last, 4]
+    i = 0
+    while True:
+        down = 2 * i + 1
+        if down >= last:
+            break
+        if down + 1 < last and _before(heap, down + 1, heap[down, 0], heap[down, 1], heap[down, 2], heap[down, 3]):
+            down += 1
+        if not _before(heap, down, first, second, third, fourth):
+            break
+        _move(heap, down, i)
+        i = down
+    _fill(heap, i, first, second, third, fourth, load)

@@ -12,7 +12,7 @@ from pymoo.optimize import minimize
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import ExactFront
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.exact import Budget, exact_front
+from pymoo_gridpath.exact import Budget, budget, exact_front
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 
@@ -163,3 +163,20 @@ def test_the_least_budget_of_memory_is_what_is_free():
 
     meter = Meter(Budget())
     assert 0 < meter.memory < free_memory() * 1.5
+
+
+@pytest.mark.parametrize(
+    ("limit", "reclaimable", "expected"),
+    [("1000000", "100000", 500_000), ("max", "100000", None), ("1000000", "", None), ("500000", "0", 0)],
+    ids=["limited", "no limit", "nothing said of files", "over the limit"],
+)
+def test_free_memory_heeds_what_a_container_may_have(tmp_path, monkeypatch, limit, reclaimable, expected):
+    files = [tmp_path / name for name in ("max", "current", "stat")]
+    table = f"anon 7\ninactive_file {reclaimable}" if reclaimable else "anon 7"
+    for file, text in zip(files, (limit, "600000", table), strict=True):
+        file.write_text(text + "\n")
+    absent = tuple(str(tmp_path / "absent" / name) for name in "abc")
+    monkeypatch.setattr(budget, "_CGROUPS", ((*absent, b"inactive_file"), (*map(str, files), b"inactive_file")))
+    found = budget.free_memory()
+    # Of the machine, where the container says nothing.
+    assert found == expected if expected is not None else found > 10**6

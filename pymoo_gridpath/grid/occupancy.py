@@ -1,28 +1,25 @@
-"""Occupancy grids: which cells are occupied, how large they are, where they lie, and how corners are passed."""
+"""The occupancy grid: cells that have a place and a size in metres, and what is asked of them."""
 
 from __future__ import annotations
 
 import contextlib
 import functools
-import hashlib
 import math
 import warnings
 from collections.abc import Sequence
-from numbers import Real
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import ndimage, sparse
+from scipy import sparse
 from scipy.sparse import csgraph
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import GridError, GridPathError, GridPathWarning, UnreachableError
-
-Cell = tuple[int, int]
-
-SQRT2 = math.sqrt(2.0)
+from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError
+from pymoo_gridpath.grid.arguments import Cell, as_cell, as_cells, as_pose, pairs
+from pymoo_gridpath.grid.box import Box
+from pymoo_gridpath.grid.cells import Cells
+from pymoo_gridpath.grid.inflation import disc_of, grown_by
 
 # Numbers of cells that a float holds without gaps, with one bit to spare.
 _FARTHEST = 2.0**52
@@ -32,33 +29,7 @@ _FARTHEST = 2.0**52
 _LEAST_BOXED, _MOST_REACHED = 2**16, 0.25
 
 
-class Box(NamedTuple):
-    """A rectangle of cells, from (x0, y0) on and up to (x1, y1), which are not in it."""
-
-    x0: int
-    y0: int
-    x1: int
-    y1: int
-
-    @property
-    def slices(self) -> tuple[slice, slice]:
-        """What takes the part out of an array over the grid."""
-        return slice(self.y0, self.y1), slice(self.x0, self.x1)
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Height and width."""
-        return self.y1 - self.y0, self.x1 - self.x0
-
-    def grown(self, margin: int, shape: tuple[int, int]) -> Box:
-        """Return the box with so many more cells on each side, as far as an array of that shape goes."""
-        height, width = shape
-        return Box(
-            max(self.x0 - margin, 0), max(self.y0 - margin, 0), min(self.x1 + margin, width), min(self.y1 + margin, height)
-        )
-
-
-class OccupancyGrid:
+class OccupancyGrid(Cells):
     """A rectangular grid of free and occupied cells, immutable in use.
 
     A cell is ``(x, y)`` with x to the right and y *up*, from ``(0, 0)`` at the bottom left; arrays are indexed ``[y, x]``.
@@ -107,30 +78,16 @@ class OccupancyGrid:
         name: str = "grid",
         unknown: ArrayLike | None = None,
     ):
-        self._occupied = _as_cells("occupied", occupied)
-        self._unknown = None if unknown is None else _as_cells("unknown", unknown)
-        if self._unknown is not None and self._unknown.shape != self.shape:
-            raise GridError(f"unknown has the shape {self._unknown.shape}, expected that of the grid, {self.shape}")
+        super().__init__(occupied, corner_cutting, unknown)
         self._resolution = checks.number(
             "resolution", resolution, 0.0, above=True, expected="a positive number of metres per cell", error=GridError
         )
-        self._origin = _as_pose(origin)
+        self._origin = as_pose(origin)
         if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in self._origin)):
             raise GridError(f"resolution {resolution} and origin {origin!r} put the map beyond what numbers can hold")
-        self._corner_cutting = checks.flag("corner_cutting", corner_cutting, GridError)
         self._name = checks.text("name", name, GridError)
 
     # -- what it is ---------------------------------------------------------------------------------------------------
-
-    @property
-    def occupied(self) -> np.ndarray:
-        """Occupied cells, bool, shape (height, width), read-only."""
-        return self._occupied
-
-    @property
-    def unknown(self) -> np.ndarray | None:
-        """Cells of which the map did not say whether they are free, bool, shape (height, width), read-only; None as above."""
-        return self._unknown
 
     @property
     def resolution(self) -> float:
@@ -143,43 +100,9 @@ class OccupancyGrid:
         return self._origin
 
     @property
-    def corner_cutting(self) -> bool:
-        """Whether a diagonal step may touch an occupied cell."""
-        return self._corner_cutting
-
-    @property
     def name(self) -> str:
         """What figures and files call this grid."""
         return self._name
-
-    @property
-    def width(self) -> int:
-        """Number of columns."""
-        return self._occupied.shape[1]
-
-    @property
-    def height(self) -> int:
-        """Number of rows."""
-        return self._occupied.shape[0]
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """``(height, width)``, the shape of arrays over this grid."""
-        return self.height, self.width
-
-    @property
-    def n_occupied(self) -> int:
-        """Number of occupied cells."""
-        return int(np.count_nonzero(self._occupied))
-
-    @functools.cached_property
-    def digest(self) -> str:
-        """SHA-256, in hexadecimal, of the size and of which cells are occupied; the one by which files and runs know a grid.
-
-        Of the text ``"{width} {height} "`` and the cells, row by row from the bottom, eight a byte, the first highest.
-        """
-        cells = np.packbits(self._occupied).data
-        return hashlib.sha256(b"".join((f"{self.width} {self.height} ".encode(), cells))).hexdigest()
 
     def replace(self, **changes) -> OccupancyGrid:
         """Return a copy in which the named constructor arguments are changed.
@@ -187,7 +110,7 @@ class OccupancyGrid:
         Unknown cells are forgotten if ``occupied`` has another shape.
         """
         if "occupied" in changes:
-            changes["occupied"] = _as_cells("occupied", changes["occupied"])
+            changes["occupied"] = as_cells("occupied", changes["occupied"])
         arguments = {
             "occupied": self._occupied,
             "resolution": self._resolution,
@@ -226,16 +149,6 @@ class OccupancyGrid:
 
     # -- cells --------------------------------------------------------------------------------------------------------
 
-    def contains(self, cell: Sequence[int]) -> bool:
-        """Whether a cell lies on the grid."""
-        x, y = _as_cell("cell", cell)
-        return 0 <= x < self.width and 0 <= y < self.height
-
-    def is_free(self, cell: Sequence[int]) -> bool:
-        """Whether a cell lies on the grid and is not occupied."""
-        x, y = _as_cell("cell", cell)
-        return self.contains((x, y)) and not self._occupied[y, x]
-
     def nearest_free(self, cell: Sequence[int], joined_with: Sequence[int] | None = None) -> Cell | None:
         """Return the free cell nearest to ``cell`` (Euclidean; ties: lower y, then lower x), or None if all are occupied.
 
@@ -246,7 +159,7 @@ class OccupancyGrid:
         joined_with : sequence of two ints, optional
             A free cell; only others that a path joins with it count, and None says that there are none.
         """
-        cell, wanted = _as_cell("cell", cell), ~self._occupied
+        cell, wanted = as_cell("cell", cell), ~self._occupied
         if joined_with is not None:
             x, y = self.check_cell(joined_with, "joined_with")
             wanted = self.regions == self.regions[y, x]
@@ -278,7 +191,7 @@ class OccupancyGrid:
             If it is not a pair of whole numbers, lies outside the grid or is occupied; the message names the nearest free
             cell, and if the other end is one, the nearest that a path joins with it.
         """
-        x, y = _as_cell(checks.text("role", role, GridError), cell)
+        x, y = as_cell(checks.text("role", role, GridError), cell)
         if self.is_free((x, y)):
             return x, y
         hint = self._hint((x, y), other)
@@ -338,7 +251,7 @@ class OccupancyGrid:
         numpy.ndarray, shape (..., 2)
             Metres.
         """
-        local = (_pairs("cells", cells, "cells (x, y)").astype(float) + 0.5) * self._resolution
+        local = (pairs("cells", cells, "cells (x, y)").astype(float) + 0.5) * self._resolution
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
         return local @ np.array([[cos, sin], [-sin, cos]]) + np.array([x0, y0])
@@ -362,7 +275,7 @@ class OccupancyGrid:
         """
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
-        local = (_pairs("points", points, "points (x, y) in metres") - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
+        local = (pairs("points", points, "points (x, y) in metres") - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
         with np.errstate(over="ignore"):
             cells = np.floor(local / self._resolution)
         if not (np.abs(cells) <= _FARTHEST).all():
@@ -370,31 +283,6 @@ class OccupancyGrid:
         return cells.astype(int)
 
     # -- the whole grid -----------------------------------------------------------------------------------------------
-
-    @functools.cached_property
-    def regions(self) -> np.ndarray:
-        """Label of the connected free region of each cell, shape (height, width); 0 where occupied.
-
-        Without corner cutting a diagonal step needs both cells beside it free, so regions are those of the four straight
-        moves; with it, those of all eight.
-        """
-        structure = np.ones((3, 3)) if self._corner_cutting else None
-        part = self._free_box.slices
-        labels = np.zeros(self.shape, dtype=np.int32)
-        labels[part] = ndimage.label(~self._occupied[part], structure=structure)[0]  # pyright: ignore
-        labels.flags.writeable = False
-        return labels
-
-    @property
-    def whole(self) -> Box:
-        """The box of all cells."""
-        return Box(0, 0, self.width, self.height)
-
-    @functools.cached_property
-    def _free_box(self) -> Box:
-        """The bounding box of the free cells; all cells if none is free."""
-        xs, ys = (np.flatnonzero(~self._occupied.all(axis=axis)) for axis in (0, 1))
-        return Box(int(xs[0]), int(ys[0]), int(xs[-1]) + 1, int(ys[-1]) + 1) if len(xs) else self.whole
 
     def box_of(self, start: Sequence[int]) -> Box:
         """Return the part of the grid that is enough to plan paths from a cell.
@@ -408,7 +296,7 @@ class OccupancyGrid:
         GridError
             If it is no cell of the grid.
         """
-        x, y = _as_cell("start", start)
+        x, y = as_cell("start", start)
         if not self.contains((x, y)):
             self.check_cell((x, y), "start")
         if self._occupied.size < _LEAST_BOXED or self._occupied[y, x]:
@@ -417,10 +305,6 @@ class OccupancyGrid:
         left, low = self._free_box[:2]
         box = Box(left + columns.start, low + rows.start, left + columns.stop, low + rows.stop).grown(1, self.shape)
         return box if math.prod(box.shape) <= _MOST_REACHED * self._occupied.size else self.whole
-
-    @functools.cached_property
-    def _region_slices(self) -> list:
-        return ndimage.find_objects(self.regions[self._free_box.slices])
 
     def crop(self, box: Box) -> OccupancyGrid:
         """Return the grid of the cells in a box, each where it was in metres; the grid itself if these are all."""
@@ -452,9 +336,7 @@ class OccupancyGrid:
         """
         radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
         cells = radius / self._resolution
-        reach = math.ceil(min(cells + 0.5, max(self.shape)))
-        offset = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0) ** 2
-        disc = np.sqrt(offset[:, None] + offset[None, :]) < cells - 1e-9
+        disc = disc_of(cells, max(self.shape))
         if disc.sum() <= 1:
             if radius > 0:
                 warnings.warn(
@@ -464,44 +346,7 @@ class OccupancyGrid:
                     stacklevel=2,
                 )
             return self
-        # It takes as long to import as the rest of the package, and is used by this method alone.
-        from scipy import signal
-
-        # No other cell can change, nor can one further away change any.
-        part = self._free_box.grown(reach, self.shape).slices
-        hits = signal.oaconvolve(self._occupied[part].astype(float), disc.astype(float), mode="same")
-        inflated = self._occupied.copy()
-        inflated[part] |= hits > 0.5
-        inflated.flags.writeable = False
-        return self.replace(occupied=inflated)
-
-    def move_graph(self) -> sparse.csr_array:
-        """Return the legal moves as a sparse graph, for `scipy.sparse.csgraph`.
-
-        Returns
-        -------
-        scipy.sparse.csr_array, shape (height * width, height * width)
-            Entry [a, b] is the length in cells of the step from cell a to cell b, 1 or sqrt(2); cell (x, y) has the index
-            ``y * width + x``. Each step is listed in both directions.
-        """
-        free = ~self._occupied
-        index = np.arange(free.size, dtype=np.int32).reshape(free.shape)  # what csgraph takes before scipy 1.15
-        pairs, lengths = [], []
-
-        def add(a, b, legal, length):
-            pairs.append(np.stack([a[legal], b[legal]]))
-            lengths.append(np.full(pairs[-1].shape[1], length))
-
-        add(index[:, :-1], index[:, 1:], free[:, :-1] & free[:, 1:], 1.0)
-        add(index[:-1, :], index[1:, :], free[:-1, :] & free[1:, :], 1.0)
-        rising, falling = free[:-1, :-1] & free[1:, 1:], free[1:, :-1] & free[:-1, 1:]
-        if not self._corner_cutting:
-            rising, falling = rising & falling, rising & falling
-        add(index[:-1, :-1], index[1:, 1:], rising, SQRT2)
-        add(index[1:, :-1], index[:-1, 1:], falling, SQRT2)
-        (a, b), length = np.concatenate(pairs, axis=1), np.concatenate(lengths)
-        rows, cols = np.concatenate([a, b]), np.concatenate([b, a])
-        return sparse.csr_array((np.tile(length, 2), (rows, cols)), shape=(free.size, free.size))
+        return self.replace(occupied=grown_by(self._occupied, disc, self._free_box))
 
     def shortest_lengths(self, start: Sequence[int], limit: float = math.inf) -> np.ndarray:
         """Return the length in cells of the shortest path from ``start`` to every cell.
@@ -560,57 +405,3 @@ def check_box(box: Box, grid: OccupancyGrid) -> Box:
 def check_grid(grid: OccupancyGrid) -> OccupancyGrid:
     """Return what is given as a grid if it is one."""
     return checks.instance("grid", grid, OccupancyGrid, "; load_map reads one", error=GridError)
-
-
-def _as_pose(origin) -> tuple[float, ...]:
-    """Return (x, y, yaw)."""
-    expected = "(x, y) or (x, y, yaw) in metres and radians"
-    try:
-        pose = tuple(checks.number("origin", v, expected=expected) for v in checks.items("origin", origin, expected))
-    except GridPathError:
-        pose = ()
-    if len(pose) not in (2, 3):
-        raise GridError(f"origin is {shown(origin)}, expected {expected}")
-    return pose if len(pose) == 3 else (*pose, 0.0)
-
-
-def _as_cell(role: str, cell) -> Cell:
-    """Return a cell as a pair of ints, on the grid or not."""
-    if type(cell) is tuple and len(cell) == 2 and type(cell[0]) is int and type(cell[1]) is int:
-        return cell
-    try:
-        x, y = (int(v) for v in cell)
-        whole = all(isinstance(v, Real) for v in cell) and (x, y) == tuple(cell)
-    except Exception:
-        whole, x, y = False, 0, 0
-    if not whole or (isinstance(cell, np.ma.MaskedArray) and np.ma.getmaskarray(cell).any()):
-        raise GridError(f"{role} is {shown(cell)}, expected a cell (x, y) of two whole numbers")
-    return x, y
-
-
-def _pairs(name: str, values: ArrayLike, what: str) -> np.ndarray:
-    """Return an array of pairs of finite numbers, shape (..., 2)."""
-    expected = f"{what} as numbers of shape (..., 2)"
-    pairs = checks.array(name, values, expected=expected, finite=True, error=GridError)
-    if pairs.shape[-1:] != (2,):
-        raise GridError(f"{name} is {shown(pairs)}, expected {expected}")
-    return pairs
-
-
-def _as_cells(name: str, cells: ArrayLike) -> np.ndarray:
-    """Return a read-only bool copy of an array of 0 and 1, or the array itself if it is as such a copy."""
-    values = "0 (free) and 1 (occupied)" if name == "occupied" else "0 and 1"
-    array = checks.array(name, cells, expected=f"a two-dimensional array of booleans, or of {values}", error=GridError)
-    if array.ndim != 2:
-        raise GridError(f"a grid needs a two-dimensional array of {name} cells, got {array.ndim} dimensions")
-    if array.size == 0:
-        raise GridError(f"a grid needs at least one cell, got an array of shape {array.shape}")
-    if array.dtype != bool and not np.isin(array, (0, 1)).all():
-        raise GridError(f"a grid needs an array of booleans, or of {values}, as {name} cells, got other values")
-    flags = array.flags
-    if type(array) is np.ndarray and array.dtype == bool and flags.owndata and flags.c_contiguous and not flags.writeable:
-        return array  # nobody writes into it, and on large maps copies are what takes the memory
-    # Row by row whatever the order of the given one, for its bytes and its flat view are those of the grid.
-    copy = array.astype(bool, order="C")
-    copy.flags.writeable = False
-    return copy

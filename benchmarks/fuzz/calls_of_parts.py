@@ -1,0 +1,239 @@
+"""One valid call of every public name, from maps to paths and searches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, cast
+
+import numpy as np
+from world import Call, World
+
+import pymoo_gridpath
+from pymoo_gridpath import (
+    GridPathProblem,
+    OccupancyGrid,
+    algorithms,
+    exact,
+    fields,
+    maps,
+    objectives,
+    problems,
+    quality,
+    representations,
+)
+from pymoo_gridpath.maps.shipped import ShippedMap
+from pymoo_gridpath.paths import CellPaths, ColumnPaths
+from pymoo_gridpath.paths.frame import MonotoneFrame
+
+
+def _grids(w: World) -> dict[str, Call]:
+    grid, cell = w.grid, (1, 1)
+    return {
+        "OccupancyGrid": (
+            OccupancyGrid,
+            {"occupied": w.occupied, "resolution": 0.5, "origin": (1.0, 2.0, 0.3), "corner_cutting": True, "name": "own"},
+        ),
+        "OccupancyGrid.box_of": (grid.box_of, {"start": cell}),
+        "OccupancyGrid.check_cell": (grid.check_cell, {"cell": cell, "role": "start"}),
+        "OccupancyGrid.check_query": (grid.check_query, w.query),
+        "OccupancyGrid.contains": (grid.contains, {"cell": cell}),
+        "OccupancyGrid.crop": (grid.crop, {"box": grid.whole}),
+        "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
+        "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),
+        "OccupancyGrid.move_graph": (grid.move_graph, {}),
+        "OccupancyGrid.nearest_free": (grid.nearest_free, {"cell": cell}),
+        "OccupancyGrid.replace": (grid.replace, {"resolution": 2.0, "occupied": w.occupied}),
+        "OccupancyGrid.shortest_length": (grid.shortest_length, {"start": cell, "goal": cell}),
+        "OccupancyGrid.shortest_lengths": (grid.shortest_lengths, {"start": cell, "limit": 5.0}),
+        "OccupancyGrid.to_cells": (grid.to_cells, {"points": np.array([[1.0, 2.0], [3.0, 4.0]])}),
+        "OccupancyGrid.to_metres": (grid.to_metres, {"cells": np.array([[1, 2], [3, 4]])}),
+        "obstacle_potential": (fields.obstacle_potential, {"grid": grid, "variance": 2.0}),
+        "clearance": (fields.clearance, {"grid": grid}),
+    }
+
+
+def _maps(w: World) -> dict[str, Call]:
+    pose = {"resolution": 0.5, "origin": (1.0, 2.0)}
+    return {
+        "load_map": (maps.load_map, {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose}),
+        "load_shipped": (maps.load_shipped, {"name": "office", "corner_cutting": True}),
+        "format_of": (maps.format_of, {"path": w.ros_map}),
+        "query_of": (maps.query_of, {"path": w.text_map}),
+        "Query": (maps.Query, {**w.query, "radius": 0.1}),
+        "read_string": (maps.read_string, {"path": w.text_map, "limit": 1000}),
+        "read_image": (
+            maps.read_image,
+            {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose},
+        ),
+        "read_movingai": (maps.read_movingai, {"path": w.movingai_map, "corner_cutting": True, **pose}),
+        "read_npy": (maps.read_npy, {"path": w.npy_map, "corner_cutting": True, **pose}),
+        "read_ros": (maps.read_ros, {"path": w.ros_map, "unknown": "occupied", "corner_cutting": True}),
+        "read_scen": (maps.read_scen, {"path": w.scen, "grid": maps.read_movingai(w.movingai_map)}),
+        "read_text": (maps.read_text, {"path": w.text_map, "corner_cutting": True, **pose}),
+        "read_text_header": (maps.read_text_header, {"path": w.text_map}),
+        "shipped_maps": (maps.shipped_maps, {}),
+        "ScenQuery": (
+            maps.ScenQuery,
+            {"bucket": 0, "map_name": "a", "width": 4, "height": 3, **w.query, "optimal_length": 4.0},
+        ),
+        "ShippedMap": (ShippedMap, {"name": "a", "title": "A", "path": w.text_map, **w.query, "radius": 0.1}),
+        "TextHeader": (maps.TextHeader, {"name": "a", "title": "A", **pose, "corner_cutting": True, **w.query, "radius": 0.1}),
+    }
+
+
+def _problems(w: World) -> dict[str, Call]:
+    problem, limited = w.problem, w.limited
+    paths = problem.decode(w.legal_rows)
+    own = {"grid": w.grid, **w.query, "representation": "integer", "objectives": ("length", "vulnerability"), "axis": "x"}
+    return {
+        "GridPathProblem": (
+            GridPathProblem,
+            {**own, "objectives": ["vulnerability"], "obstacles": "limit", "penalty": 9.0, "potential_limit": 5.0},
+        ),
+        "GridPathProblem.decode": (problem.decode, {"X": w.rows(problem)}),
+        "GridPathProblem.evaluate": (partial(problem.evaluate, return_values_of=["F", "turn"]), {"X": w.rows(problem)}),
+        "GridPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
+        "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),
+        "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),
+        "GridPathProblem.score": (problem.score, {"paths": paths}),
+        "random_dense_grid": (problems.random_dense_grid, {"size": 8, "p0": 0.3, "random_state": 1}),
+        "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
+        "Length": (objectives.Length, {}),
+        **{
+            f"{type(one).__name__}.{method}": (getattr(one, method), given)
+            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0))
+            for method, given in (
+                ("moves", {"grid": w.grid}),
+                ("prepare", {"representation": w.problem.representation, "grid": w.grid}),
+            )
+        },
+        "Objective.field": (objectives.Turn().field, {"grid": w.grid}),
+        "Objective.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
+        "Objective.moves": (objectives.Turn().moves, {"grid": w.grid}),
+        "Objective.prepare": (objectives.Turn().prepare, {"representation": w.problem.representation, "grid": w.grid}),
+        "register": (pymoo_gridpath.register, {"cls": objectives.Length}),
+        "Length.field": (objectives.Length().field, {"grid": w.grid}),
+        "Length.field_in": (objectives.Length().field_in, {"grid": w.grid, "box": w.grid.whole}),
+        "Turn": (objectives.Turn, {}),
+        "Turn.field": (objectives.Turn().field, {"grid": w.grid}),
+        "Turn.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
+        "Vulnerability": (objectives.Vulnerability, {"variance": 2.0}),
+        "Vulnerability.field": (objectives.Vulnerability(2.0).field, {"grid": w.grid}),
+        "Vulnerability.field_in": (objectives.Vulnerability(2.0).field_in, {"grid": w.grid, "box": w.grid.whole}),
+        # An objective of one's own, whose field and values are arguments too.
+        "Objective": (partial(_own_objective, w), {"field": w.field, "factor": np.ones(5)}),
+    }
+
+
+def _fresh(w: World, method: str) -> Callable:
+    """Return a method of a problem that has not been asked before; the first answer is kept."""
+
+    def ask(**arguments):
+        return getattr(GridPathProblem(w.grid, **w.query, representation="integer"), method)(**arguments)
+
+    return ask
+
+
+def _own_objective(w: World, field, factor):
+    class Own(objectives.Objective):
+        name = label = "own"
+
+        def field(self, grid):
+            return field
+
+        def __call__(self, paths, prepared):
+            return factor
+
+    problem = GridPathProblem(w.grid, **w.query, representation="integer", objectives=[Own()])
+    return problem.evaluate(w.rows(problem))
+
+
+def _codings(w: World) -> dict[str, Call]:
+    found: dict[str, Call] = {
+        "default_representation": (representations.default_representation, {"corner_cutting": True, "axis": "x"}),
+        "make_representation": (representations.make_representation, {"name": "mixed", "grid": w.grid, **w.query, "axis": "x"}),
+    }
+    for coding in w.codings.values():
+        cls = type(coding)
+        X = w.rows(coding)
+        own = {"axis": "x"} if isinstance(coding, representations.MonotoneRepresentation) else {}
+        if cls is representations.CellSequence:
+            own = {"max_cells": 20, "fields": [w.field], "spare": 2.0}
+            X = coding.repair(X, w.random)
+        paths = coding.decode(X)
+        found[cls.__name__] = (cls, {"grid": w.grid, **w.query, **own})
+        arguments: dict[str, dict[str, Any]] = {
+            "decode": {"X": X},
+            "encode": {"paths": paths},
+            "exit_rows": {"X": X},
+            "fits": {"sequences": paths.sequences},
+            "from_sequences": {"sequences": paths.sequences},
+            "genes": {"X": X},
+            "prepare": {"field": w.field},
+            "repair": {"X": X, "random_state": w.random},
+            "row_moves": {"X": X},
+            "to_sequences": {"X": X},
+        }
+        for method, given in arguments.items():
+            if hasattr(coding, method):
+                found[f"{cls.__name__}.{method}"] = (getattr(coding, method), given)
+    return found
+
+
+def _paths(w: World) -> dict[str, Call]:
+    frame, paths = w.frame, cast(ColumnPaths, w.problem.decode(w.rows(w.problem)))
+    cells = w.codings["cells"].decode(w.rows(w.codings["cells"]))
+    n = frame.n_columns - 1
+    return {
+        "MonotoneFrame": (MonotoneFrame, {"grid": w.grid, **w.query, "axis": "x"}),
+        "MonotoneFrame.admits_path": (frame.admits_path, {}),
+        "MonotoneFrame.columns": (frame.columns, {"field": w.field}),
+        "MonotoneFrame.flanks_at": (frame.flanks_at, {"row": paths.leave[:, :n], "step": np.ones((len(paths), n), dtype=int)}),
+        "MonotoneFrame.from_cells": (frame.from_cells, {"cells": np.array([[1, 2], [3, 4]])}),
+        "MonotoneFrame.prefix_sums": (frame.prefix_sums, {"field": w.field}),
+        "MonotoneFrame.to_cells": (frame.to_cells, {"column": np.array([0, 1]), "row": np.array([0, 2])}),
+        "ColumnPaths": (partial(_measured, ColumnPaths), {"frame": frame, "enter": paths.enter, "leave": paths.leave}),
+        "ColumnPaths.cells": (paths.cells, {"index": 1}),
+        "ColumnPaths.through": (ColumnPaths.through, {"frame": frame, "exit_rows": paths.leave[:, :n]}),
+        "ColumnPaths.total": (paths.total, {"sums": w.problem.representation.prepare(w.field)}),
+        "CellPaths": (partial(_measured, CellPaths), {"grid": w.grid, "rows": cells.rows}),
+        "CellPaths.cells": (cells.cells, {"index": 1}),
+        "CellPaths.total": (cells.total, {"field": w.field.ravel()}),
+        "ColumnPaths.moves_total": (paths.moves_total, {"enter": w.enter}),
+        "CellPaths.moves_total": (cells.moves_total, {"enter": w.enter}),
+    }
+
+
+def _measured(cls, **arguments):
+    paths = cls(**arguments)
+    return paths.length, paths.turn, paths.interfering_cells
+
+
+def _search(w: World) -> dict[str, Call]:
+    front = np.array([[0.0, 4.0], [1.0, 1.0], [4.0, 0.0]])
+    return {
+        "ExactFront.plan": (algorithms.ExactFront().plan, {"problem": w.problem}),
+        "ExactFront.parameters": (algorithms.ExactFront.parameters, {}),
+        "find_algorithm": (algorithms.find_algorithm, {"name": "nsga2"}),
+        "hypervolume_ratio": (quality.hypervolume_ratio, {"F": front + 0.5, "front": front}),
+        "igd_plus": (quality.igd_plus, {"F": front + 0.5, "front": front}),
+        "share_found": (quality.share_found, {"F": front, "front": front}),
+        "Budget": (exact.Budget, {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False}),
+        "exact_front": (exact.exact_front, {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0)}),
+        "ExactResult": (
+            exact.ExactResult,
+            {
+                "X": w.legal_rows,
+                "F": np.zeros((1, 2)),
+                "complete": True,
+                "message": "",
+                "n_labels": 1,
+                "n_bytes": 1,
+                "seconds": 1.0,
+            },
+        ),
+    }
+
+
+CALLS = (_grids, _maps, _problems, _codings, _paths, _search)

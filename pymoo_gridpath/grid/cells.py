@@ -1,0 +1,141 @@
+"""Which cells of a grid are occupied, and which of the others hang together."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import ndimage, sparse
+
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridError
+from pymoo_gridpath.grid.arguments import as_cell, as_cells
+from pymoo_gridpath.grid.box import Box
+
+SQRT2 = math.sqrt(2.0)
+
+
+class Cells:
+    """What an `OccupancyGrid` is before its cells have a place and a size; see there for the parameters."""
+
+    def __init__(self, occupied: ArrayLike, corner_cutting: bool, unknown: ArrayLike | None):
+        self._occupied = as_cells("occupied", occupied)
+        self._unknown = None if unknown is None else as_cells("unknown", unknown)
+        if self._unknown is not None and self._unknown.shape != self.shape:
+            raise GridError(f"unknown has the shape {self._unknown.shape}, expected that of the grid, {self.shape}")
+        self._corner_cutting = checks.flag("corner_cutting", corner_cutting, GridError)
+
+    @property
+    def occupied(self) -> np.ndarray:
+        """Occupied cells, bool, shape (height, width), read-only."""
+        return self._occupied
+
+    @property
+    def unknown(self) -> np.ndarray | None:
+        """Cells of which the map did not say whether they are free, bool, shape (height, width), read-only, or None."""
+        return self._unknown
+
+    @property
+    def corner_cutting(self) -> bool:
+        """Whether a diagonal step may touch an occupied cell."""
+        return self._corner_cutting
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return self._occupied.shape[1]
+
+    @property
+    def height(self) -> int:
+        """Number of rows."""
+        return self._occupied.shape[0]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """``(height, width)``, the shape of arrays over this grid."""
+        return self.height, self.width
+
+    @property
+    def n_occupied(self) -> int:
+        """Number of occupied cells."""
+        return int(np.count_nonzero(self._occupied))
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """SHA-256, in hexadecimal, of the size and of which cells are occupied; the one by which files and runs know a grid.
+
+        Of the text ``"{width} {height} "`` and the cells, row by row from the bottom, eight a byte, the first highest.
+        """
+        cells = np.packbits(self._occupied).data
+        return hashlib.sha256(b"".join((f"{self.width} {self.height} ".encode(), cells))).hexdigest()
+
+    def contains(self, cell: Sequence[int]) -> bool:
+        """Whether a cell lies on the grid."""
+        x, y = as_cell("cell", cell)
+        return 0 <= x < self.width and 0 <= y < self.height
+
+    def is_free(self, cell: Sequence[int]) -> bool:
+        """Whether a cell lies on the grid and is not occupied."""
+        x, y = as_cell("cell", cell)
+        return self.contains((x, y)) and not self._occupied[y, x]
+
+    @functools.cached_property
+    def regions(self) -> np.ndarray:
+        """Label of the connected free region of each cell, shape (height, width); 0 where occupied.
+
+        Without corner cutting a diagonal step needs both cells beside it free, so regions are those of the four straight
+        moves; with it, those of all eight.
+        """
+        structure = np.ones((3, 3)) if self._corner_cutting else None
+        part = self._free_box.slices
+        labels = np.zeros(self.shape, dtype=np.int32)
+        labels[part] = ndimage.label(~self._occupied[part], structure=structure)[0]  # pyright: ignore
+        labels.flags.writeable = False
+        return labels
+
+    @property
+    def whole(self) -> Box:
+        """The box of all cells."""
+        return Box(0, 0, self.width, self.height)
+
+    @functools.cached_property
+    def _free_box(self) -> Box:
+        """The bounding box of the free cells; all cells if none is free."""
+        xs, ys = (np.flatnonzero(~self._occupied.all(axis=axis)) for axis in (0, 1))
+        return Box(int(xs[0]), int(ys[0]), int(xs[-1]) + 1, int(ys[-1]) + 1) if len(xs) else self.whole
+
+    @functools.cached_property
+    def _region_slices(self) -> list:
+        return ndimage.find_objects(self.regions[self._free_box.slices])
+
+    def move_graph(self) -> sparse.csr_array:
+        """Return the legal moves as a sparse graph, for `scipy.sparse.csgraph`.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (height * width, height * width)
+            Entry [a, b] is the length in cells of the step from cell a to cell b, 1 or sqrt(2); cell (x, y) has the index
+            ``y * width + x``. Each step is listed in both directions.
+        """
+        free = ~self._occupied
+        index = np.arange(free.size, dtype=np.int32).reshape(free.shape)  # what csgraph takes before scipy 1.15
+        pairs, lengths = [], []
+
+        def add(a, b, legal, length):
+            pairs.append(np.stack([a[legal], b[legal]]))
+            lengths.append(np.full(pairs[-1].shape[1], length))
+
+        add(index[:, :-1], index[:, 1:], free[:, :-1] & free[:, 1:], 1.0)
+        add(index[:-1, :], index[1:, :], free[:-1, :] & free[1:, :], 1.0)
+        rising, falling = free[:-1, :-1] & free[1:, 1:], free[1:, :-1] & free[:-1, 1:]
+        if not self._corner_cutting:
+            rising, falling = rising & falling, rising & falling
+        add(index[:-1, :-1], index[1:, 1:], rising, SQRT2)
+        add(index[1:, :-1], index[:-1, 1:], falling, SQRT2)
+        (a, b), length = np.concatenate(pairs, axis=1), np.concatenate(lengths)
+        rows, cols = np.concatenate([a, b]), np.concatenate([b, a])
+        return sparse.csr_array((np.tile(length, 2), (rows, cols)), shape=(free.size, free.size))
