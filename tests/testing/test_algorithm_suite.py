@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 import warnings
+from importlib.util import find_spec
 from typing import ClassVar
 
 import numpy as np
@@ -54,6 +55,7 @@ class TestParallelMOEAD(AlgorithmSuite):
     algorithm = "ParallelMOEAD"
 
 
+@pytest.mark.skipif(find_spec("numba") is None, reason="numba is not installed")
 class TestAGEMOEA(AlgorithmSuite):
     """Of which make_algorithm changes a part after it is made."""
 
