@@ -179,7 +179,7 @@ RULES = {
     # The name of the coding, which is taken, and which the paper's planner takes.
     default_representation: {"representations.integer", "representations.factory", "algorithms.paper"},
     query_of_a_map: {"maps.queries"},
-    radius_of_a_robot: {"grid"},
+    radius_of_a_robot: {"grid.occupancy"},
     # That of a problem, and that of the paper's planner.
     penalties: {"problems.grid_path", "algorithms.paper"},
     # What each derives from, by which it is registered; and what a file says of a run, by where pymoo's algorithms hold it.
@@ -191,8 +191,8 @@ RULES = {
     # And whether a path of cells has to be mended, which is no question of limits.
     legality: {"problems.members", "representations.cell_sequence"},
     # A worker that nobody waits for any more ends itself.
-    exit_codes: {"cli.arguments", "study.running.executors"},
-    digest_of_a_grid: {"grid"},
+    exit_codes: {"cli.arguments", "study.running.processes"},
+    digest_of_a_grid: {"grid.cells"},
     records_of_convergence: {"problems.members"},
 }
 
@@ -241,7 +241,7 @@ def test_commands_return_exit_codes_by_name():
 def test_corners_are_looked_at_once_for_each_form_of_a_path():
     """As edges of a graph, as bits of steps, as cells in order, and as columns; the suites of `testing` hold them together."""
     found = {name for name, tree in TREES.items() if any(corners(tree))}
-    assert found == {"grid", "search.moves", "paths.base", "paths.column", "paths.frame"}
+    assert found == {"grid.cells", "search.moves", "paths.base", "paths.column", "paths.frame"}
     assert any(corners(ast.parse("if not grid.corner_cutting:\n    diagonal = diagonal & free")))
 
 
