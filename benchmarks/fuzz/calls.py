@@ -50,6 +50,8 @@ INTERNAL = ("pymoo_gridpath.search", "pymoo_gridpath.testing")
 
 # What extensions are made of. It is called with what the package hands over, and does not check that.
 BUILDING_BLOCKS = (
+    "QuadrantPaths",
+    "Waypoints",
     "Moves",
     "Plan",
     "ReferenceFront",
@@ -60,6 +62,7 @@ BUILDING_BLOCKS = (
     "check_size",
     "make_grid",
     "reference_planner",
+    "settled",
 )
 
 Call = tuple[Callable, dict[str, Any]]
@@ -382,6 +385,8 @@ def _search(w: World) -> dict[str, Call]:
     return {
         "ExactFront.plan": (algorithms.ExactFront().plan, {"problem": w.problem}),
         "ExactFront.parameters": (algorithms.ExactFront.parameters, {}),
+        "ExactFront.refuse": (algorithms.ExactFront.refuse, {"problem": w.problem}),
+        **_planners(w),
         "find_algorithm": (algorithms.find_algorithm, {"name": "nsga2"}),
         "hypervolume_ratio": (quality.hypervolume_ratio, {"F": front + 0.5, "front": front}),
         "igd_plus": (quality.igd_plus, {"F": front + 0.5, "front": front}),
@@ -401,6 +406,28 @@ def _search(w: World) -> dict[str, Call]:
             },
         ),
     }
+
+
+def _planners(w: World) -> dict[str, Call]:
+    """Calls of the planners that plan cells."""
+    problem = GridPathProblem(w.grid, **w.query, representation="cells")
+    arguments: dict[type, dict[str, Any]] = {
+        algorithms.QuadrantSelection: {
+            "speed": 0.5,
+            "turn_seconds": 0.1,
+            "alternatives": 2,
+            "smooth": False,
+            "max_paths": 9,
+            "strict": True,
+        },
+    }
+    found: dict[str, Call] = {}
+    for cls, given in arguments.items():
+        found[cls.__name__] = (cls, given)
+        found[f"{cls.__name__}.plan"] = (cls().plan, {"problem": problem})
+        found[f"{cls.__name__}.parameters"] = (cls.parameters, {})
+        found[f"{cls.__name__}.refuse"] = (cls.refuse, {"problem": problem})
+    return found
 
 
 def _operators(w: World) -> dict[str, Call]:

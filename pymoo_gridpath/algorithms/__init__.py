@@ -10,7 +10,8 @@ from pymoo_gridpath.algorithms.paper import Setup, ahmed_deb_2013
 from pymoo_gridpath.algorithms.runs import minimize_runs
 from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.algorithms.termination import FirstLegalPath
-from pymoo_gridpath.planners import ExactFront, PathOutput
+from pymoo_gridpath.planners import ExactFront, PathOutput, QuadrantPaths, QuadrantSelection
+from pymoo_gridpath.search.sight import Waypoints
 
 __all__ = [
     "ALGORITHMS",
@@ -19,10 +20,13 @@ __all__ = [
     "ExactFront",
     "FirstLegalPath",
     "PathOutput",
+    "QuadrantPaths",
+    "QuadrantSelection",
     "Setup",
     "SmoothMOEAD",
     "StrengthAndSmoothness",
     "StrengthTournament",
+    "Waypoints",
     "ahmed_deb_2013",
     "capability_table",
     "find_algorithm",

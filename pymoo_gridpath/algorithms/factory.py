@@ -81,7 +81,7 @@ def make_algorithm(
     Raises
     ------
     CapabilityError
-        If there is no such algorithm; if it cannot solve this problem (number of objectives, constraints, discrete genes); if
+        If there is no such algorithm; if it cannot solve this problem (number of objectives, constraints, genes); if
         it has no smoothness tie-break but one is asked for; if an argument is unknown, or needed and missing; or if a package
         it needs is not installed.
 
@@ -100,6 +100,7 @@ def make_algorithm(
     row = find_algorithm(name, getattr(problem, "n_obj", None))
     if not isinstance(row, Capability):
         given = {"pop_size": pop_size, "smoothness": smoothness, "operators": operators}
+        row.refuse(problem)
         return _planner(row, {key: value for key, value in given.items() if value is not None}, kwargs)
     refuse_problem(row, problem)
     return build(row, problem, pop_size, smoothness, operators, **kwargs)
