@@ -51,7 +51,7 @@ def plan(grid: OccupancyGrid, start: Cell, goal: Cell, **arguments):
     problem = GridPathProblem(grid, start, goal, CellSequence(grid, start, goal, max_cells=grid.occupied.size))
     planner = QuadrantSelection(**arguments)
     planned = planner.plan(problem)
-    paths = problem.decode(planned.paths)
+    paths = problem.decode(np.asarray(planned.paths))
     assert isinstance(paths, CellPaths)
     return [tuple(cell) for cell in paths.cells(0).tolist()] if len(paths) else [], planner.found
 

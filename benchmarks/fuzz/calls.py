@@ -50,6 +50,8 @@ INTERNAL = ("pymoo_gridpath.search", "pymoo_gridpath.testing")
 
 # What extensions are made of. It is called with what the package hands over, and does not check that.
 BUILDING_BLOCKS = (
+    "CountedPath",
+    "CountedSearch",
     "QuadrantPaths",
     "Waypoints",
     "Moves",
@@ -420,6 +422,12 @@ def _planners(w: World) -> dict[str, Call]:
             "max_paths": 9,
             "strict": True,
         },
+        algorithms.AStar: {"heuristic": "euclidean"},
+        algorithms.Dijkstra: {},
+        algorithms.BreadthFirst: {},
+        algorithms.BestFirst: {"heuristic": "manhattan"},
+        algorithms.JumpPointSearch: {"heuristic": "chebyshev"},
+        algorithms.OrthogonalJumpPointSearch: {},
     }
     found: dict[str, Call] = {}
     for cls, given in arguments.items():

@@ -38,8 +38,9 @@ class QuadrantPaths:
         How many ways there are to pass each obstacle that is hit on one side or the other.
     probes : int
         How often a step was tested, the same one again included.
-    cells : int
-        How many cells were looked at, each counted once.
+    cells, free_cells : int
+        How many cells were looked at, each counted once, and how many of these are free: the number to compare with the
+        ``n_cells`` of a `CountedPath`, which counts no occupied ones.
     """
 
     raw: list[np.ndarray]
@@ -48,6 +49,7 @@ class QuadrantPaths:
     n_alternatives: int
     probes: int
     cells: int
+    free_cells: int
 
 
 @register
@@ -112,7 +114,7 @@ class QuadrantSelection(Planner):
     >>> planner = QuadrantSelection()
     >>> result = minimize(problem, planner)
     >>> result.message
-    'passed 1 obstacle in 2 ways'
+    'found 2 paths, which branch in 1 place'
     >>> found = result.algorithm.found
     >>> found.seconds.round(1).tolist(), found.raw[0].tolist()
     ([25.3, 37.2], [[0, 0], [1, 1], [1, 2], [2, 2], [3, 2], [4, 2]])
@@ -146,17 +148,18 @@ class QuadrantSelection(Planner):
     def plan(self, problem) -> Plan:
         moves, grid = representation_of(problem).moves, problem.grid
         start, goal = moves.index(problem.start), moves.index(problem.goal)
-        found = branches(moves, start, goal, grid.corner_cutting, self.strict)
+        found = branches(moves, grid, start, goal, self.strict)
         order = np.argsort([octile(moves.width, hit, goal) for hit in found.hits], kind="stable").astype(np.int64)
         raw, seconds = self._listed(found, order, moves, grid.resolution)
         chosen = self._chosen(raw, moves)
         self.found = QuadrantPaths(
-            [moves.cells(path) for path in raw],
+            _split(moves, raw),
             seconds,
             [Waypoints.of(grid, moves.cells(waypoints)) for waypoints, _ in chosen],
             _count(found.to, order),
             found.n_probes,
             found.n_cells,
+            found.n_free,
         )
         paths = [path for _, path in chosen]
         cells = np.concatenate(paths) if paths else np.empty(0, dtype=np.int64)
@@ -188,11 +191,18 @@ class QuadrantSelection(Planner):
     def _message(self, found: Branches) -> str:
         if not len(found.hits):
             return "met no obstacle"
-        obstacles = counted(len(found.hits), "obstacle")
+        places = counted(len(found.hits), "place")
         if self.found.n_alternatives:
-            return f"passed {obstacles} in {counted(self.found.n_alternatives, 'way')}"
+            return f"found {counted(self.found.n_alternatives, 'path')}, which branch in {places}"
         stuck = np.count_nonzero((found.to[1::2] == NOWHERE) & (found.to[2::2] == NOWHERE))
-        return f"found no path: at {stuck} of {obstacles} both cells beside the blocked step are closed as well"
+        return f"found no path: in {stuck} of {places} where it met an obstacle, both steps beside the blocked one are illegal"
+
+
+def _split(moves: Moves, paths: list[np.ndarray]) -> list[np.ndarray]:
+    """Return the cells (x, y) of paths that are given by indices."""
+    if not paths:
+        return []
+    return np.split(moves.cells(np.concatenate(paths)), np.cumsum([len(path) for path in paths])[:-1])
 
 
 def _smoothed(path: np.ndarray, moves: Moves) -> tuple[np.ndarray, np.ndarray]:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
-from pymoo_gridpath.grid import SQRT2
+from pymoo_gridpath.grid import SQRT2, OccupancyGrid
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.route import DX, DY, room
@@ -21,6 +21,28 @@ from pymoo_gridpath.search.sequences import append_without_loops
 
 #: Where a stretch leads that ends at the goal, or nowhere.
 GOAL, NOWHERE = np.int64(-1), np.int64(-2)
+
+
+def _scans() -> tuple[np.ndarray, np.ndarray]:
+    """Return what a turn of headings comes to, clockwise and counter-clockwise, from each heading m on.
+
+    Returns
+    -------
+    tried : numpy.ndarray of int64, shape (2, 8, 256)
+        How many headings are tried until one is legal, that one included, by the legal ones as bits; 8 if there is none.
+    headings : numpy.ndarray of uint8, shape (2, 8, 9)
+        Which these are, a bit each, by their number.
+    """
+    tried, headings = np.full((2, 8, 256), 8, dtype=np.int64), np.zeros((2, 8, 9), dtype=np.uint8)
+    for k in range(7, -1, -1):
+        turned = (np.arange(8) + np.array([[-k], [k]])) % 8
+        tried[(np.arange(256) >> turned[:, :, None]) & 1 == 1] = k + 1
+        headings[:, :, k + 1 :] |= (1 << turned[:, :, None]).astype(np.uint8)
+    return tried, headings
+
+
+# Most of the time of the walk would go into these turns.
+_TRIED, _HEADINGS_TRIED = _scans()
 
 
 class Branches(NamedTuple):
@@ -41,8 +63,9 @@ class Branches(NamedTuple):
         Straight steps, diagonal steps and total turn, in units of 45 degrees, of each stretch.
     first, last : numpy.ndarray of int64, shape (2 n + 1,)
         Headings of its first and last step; -1 if it has none.
-    n_probes, n_cells : int
-        How often a step was tested, and how many cells the tests looked at or the walk came to, each counted once.
+    n_probes, n_cells, n_free : int
+        How often a step was tested; how many cells the tests looked at, and the start, each counted once; and how many of these
+        are free.
     """
 
     hits: np.ndarray
@@ -54,53 +77,59 @@ class Branches(NamedTuple):
     last: np.ndarray
     n_probes: int
     n_cells: int
+    n_free: int
 
 
-def branches(moves: Moves, start: int, goal: int, corner_cutting: bool, strict: bool = False) -> Branches:
+def branches(moves: Moves, grid: OccupancyGrid, start: int, goal: int, strict: bool = False) -> Branches:
     """Return the stretches of the walk from a cell to another.
 
     Parameters
     ----------
     moves : Moves
         With all eight headings.
+    grid : OccupancyGrid
+        Of which the steps are.
     start, goal : int
         Indices of cells.
-    corner_cutting : bool
-        The rule of the grid.
     strict : bool, default False
         The letter of the paper: whether a branch has but the cell to one side of the blocked step to go to, and follows
         nothing. It ends nowhere if that step is not legal.
     """
-    found = _branch(moves.legal, moves.offsets, moves.width, start, goal, corner_cutting, strict)
-    hits, to, cells, ends, counts = found
+    found = _branch(moves.legal, moves.offsets, moves.width, start, goal, grid.corner_cutting, strict)
+    hits, to, cells, ends, n_probes, seen = found
     measures, first, last = measure(moves.legal, moves.offsets, cells, ends)
-    return Branches(hits, to, cells, ends, measures, first, last, int(counts[0]), int(counts[1]))
+    return Branches(hits, to, cells, ends, measures, first, last, int(n_probes), *_counted(seen, grid, moves))
+
+
+def _counted(seen: np.ndarray, grid: OccupancyGrid, moves: Moves) -> tuple[int, int]:
+    """Return how many cells were seen, and how many of these are free."""
+    free = ~grid.occupied[moves.box.slices].ravel()
+    return int(np.count_nonzero(seen)), int(np.count_nonzero(seen & free))
 
 
 @kernel
 def _branch(legal, offsets, width, start, goal, corner_cutting, strict):
-    height = len(legal) // width
     number = np.full(len(legal), -1, dtype=np.int64)
     # The last hit on whose unhindered way to the goal each cell lies.
     way = np.full(len(legal), -1, dtype=np.int64)
-    seen = np.zeros(len(legal), dtype=np.bool_)
+    # The headings of the steps from each cell that were tested, a bit each.
+    tested = np.zeros(len(legal), dtype=np.uint8)
     place = np.empty(len(legal), dtype=np.int64)
     hits, to, ends = np.empty(256, dtype=np.int64), np.empty(256, dtype=np.int64), np.zeros(256, dtype=np.int64)
     cells, path = np.empty(4096, dtype=np.int64), np.empty(4096, dtype=np.int64)
-    counts = np.zeros(2, dtype=np.int64)
+    counts = np.zeros(1, dtype=np.int64)
     n_hits = n_stretches = n = 0
     # Stretch 0, then two for every hit, while there are new ones.
     while n_stretches < 1 + 2 * n_hits:
         hit = (n_stretches - 1) // 2
         side = 1 if n_stretches > 0 and n_stretches % 2 == 0 else -1
         path[0] = start if n_stretches == 0 else hits[hit]
-        seen[path[0]] = True
         length, led_on = 1, True
         if n_stretches > 0:
             blocked = towards(width, path[0], goal)
             if strict:
                 m = (blocked + side) & 7
-                led_on = probe(legal, width, height, path[0] % width, path[0] // width, m, seen, counts)
+                led_on = probe(legal, path[0], m, tested, counts)
                 if led_on:
                     path[1] = path[0] + offsets[m]
                     length = 2
@@ -108,11 +137,11 @@ def _branch(legal, offsets, width, start, goal, corner_cutting, strict):
                 if side < 0:
                     mark_way(offsets, width, path[0], goal, way, hit)
                 path, length, led_on = _follow(
-                    legal, offsets, width, goal, corner_cutting, hit, blocked, side, way, seen, counts, path
+                    legal, offsets, width, goal, corner_cutting, hit, blocked, side, way, tested, counts, path
                 )
         end = NOWHERE
         if led_on:
-            path, length = _run(legal, offsets, width, goal, seen, counts, path, length)
+            path, length = _run(legal, offsets, width, goal, tested, counts, path, length)
             cell = path[length - 1]
             end = GOAL
             if cell != goal:
@@ -127,8 +156,14 @@ def _branch(legal, offsets, width, start, goal, corner_cutting, strict):
         to[n_stretches] = end
         n_stretches += 1
         ends[n_stretches] = n
-    counts[1] = np.count_nonzero(seen)
-    return hits[:n_hits].copy(), to[:n_stretches].copy(), cells[:n].copy(), ends[: n_stretches + 1].copy(), counts
+    return (
+        hits[:n_hits].copy(),
+        to[:n_stretches].copy(),
+        cells[:n].copy(),
+        ends[: n_stretches + 1].copy(),
+        counts[0],
+        _seen(tested, width, start),
+    )
 
 
 @kernel
@@ -156,13 +191,25 @@ def _octile(dx, dy):
 
 
 @kernel
-def probe(legal, width, height, x, y, m, seen, counts):
-    """Test whether the step from a cell (x, y) along a heading is legal, and count it."""
+def probe(legal, cell, m, tested, counts):
+    """Test whether the step from a cell along a heading is legal, count it, and note that it was tested."""
     counts[0] += 1
-    nx, ny = x + DX[m], y + DY[m]
-    if nx >= 0 and nx < width and ny >= 0 and ny < height:
-        seen[ny * width + nx] = True
-    return (legal[y * width + x] >> m) & 1 == 1
+    tested[cell] |= 1 << m
+    return (legal[cell] >> m) & 1 == 1
+
+
+@kernel
+def _seen(tested, width, start):
+    """Return which cells lie where a tested step leads, on the grid, and the start."""
+    height = len(tested) // width
+    seen = np.zeros(len(tested), dtype=np.bool_)
+    seen[start] = True
+    for cell in np.flatnonzero(tested):
+        for m in range(8):
+            x, y = cell % width + DX[m], cell // width + DY[m]
+            if (tested[cell] >> m) & 1 and x >= 0 and x < width and y >= 0 and y < height:
+                seen[y * width + x] = True
+    return seen
 
 
 @kernel
@@ -175,25 +222,25 @@ def mark_way(offsets, width, cell, goal, way, hit):
 
 
 @kernel
-def _run(legal, offsets, width, goal, seen, counts, path, n):
+def _run(legal, offsets, width, goal, tested, counts, path, n):
     """Append the cells to the next hit or the goal to the ``n`` of a path; return both anew."""
-    height = len(legal) // width
     x, y = path[n - 1] % width, path[n - 1] // width
     gx, gy = goal % width, goal // width
     while x != gx or y != gy:
         m = _sign_heading(gx - x, gy - y)
-        if not probe(legal, width, height, x, y, m, seen, counts):
+        if not probe(legal, path[n - 1], m, tested, counts):
             break
         x += DX[m]
         y += DY[m]
-        path = room(path, n + 1)
+        if n == len(path):
+            path = room(path, n + 1)
         path[n] = y * width + x
         n += 1
     return path, n
 
 
 @kernel
-def _follow(legal, offsets, width, goal, corner_cutting, hit, blocked, side, way, seen, counts, path):
+def _follow(legal, offsets, width, goal, corner_cutting, hit, blocked, side, way, tested, counts, path):
     """Add the cells around an obstacle to the first of a path; return it, its length, and whether it may leave there."""
     height = len(legal) // width
     cell, n = path[0], 1
@@ -203,20 +250,21 @@ def _follow(legal, offsets, width, goal, corner_cutting, hit, blocked, side, way
     m = (blocked + side) & 7
     # Each cell is come to along each heading once at most, before all begins anew.
     for _ in range(8 * len(legal)):
-        tried = 0
-        while tried < 8 and not probe(legal, width, height, x, y, m, seen, counts):
-            m = (m + side) & 7
-            tried += 1
-        if tried == 8:
+        tried = _TRIED[(side + 1) >> 1, m, legal[cell]]
+        counts[0] += tried
+        tested[cell] |= _HEADINGS_TRIED[(side + 1) >> 1, m, tried]
+        m = (m + side * (tried - 1)) & 7
+        if not (legal[cell] >> m) & 1:
             break
         x += DX[m]
         y += DY[m]
         cell = y * width + x
-        path = room(path, n + 2)
+        if n + 2 > len(path):
+            path = room(path, n + 2)
         path[n] = cell
         n += 1
         left = _octile(gx - x, gy - y)
-        if left < far and (way[cell] == hit or probe(legal, width, height, x, y, _sign_heading(gx - x, gy - y), seen, counts)):
+        if left < far and (way[cell] == hit or probe(legal, cell, _sign_heading(gx - x, gy - y), tested, counts)):
             return path, n, True
         # The way may be passed diagonally.
         nearest, onto = far, -1
@@ -225,7 +273,7 @@ def _follow(legal, offsets, width, goal, corner_cutting, hit, blocked, side, way
             if nx < 0 or nx >= width or ny < 0 or ny >= height or way[cell + offsets[k]] != hit:
                 continue
             ahead = _octile(gx - nx, gy - ny)
-            if ahead < nearest and probe(legal, width, height, x, y, k, seen, counts):
+            if ahead < nearest and probe(legal, cell, k, tested, counts):
                 nearest, onto = ahead, k
         if onto >= 0:
             path[n] = cell + offsets[onto]

@@ -187,7 +187,14 @@ def test_what_is_quicker_depends_on_the_size_of_a_cell():
 
 def test_an_open_field_is_crossed_by_as_many_tests_as_steps():
     _, planned, found = plan(OccupancyGrid(np.zeros((9, 12))), (1, 1), (10, 5))
-    assert (found.probes, found.cells, found.n_alternatives) == (9, 10, 1) and planned.message == "met no obstacle"
+    assert (found.probes, found.cells, found.free_cells, found.n_alternatives) == (9, 10, 10, 1)
+    assert planned.message == "met no obstacle"
+
+
+def test_cells_that_are_looked_at_are_counted_once_and_occupied_ones_apart():
+    _, _, found = plan(OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 0, 0]]), (0, 1), (2, 1))
+    # Around both sides of the middle: all cells, more tests than that.
+    assert (found.cells, found.free_cells) == (9, 8) and found.probes > 9
 
 
 def test_alternatives_differ_and_come_in_order():
@@ -195,7 +202,7 @@ def test_alternatives_differ_and_come_in_order():
     problem = GridPathProblem(grid, (2, 3), (57, 36))
     result = minimize(problem, QuadrantSelection(alternatives=4))
     assert len(result.pop) == 4 and len(np.unique(result.pop.get("X"), axis=0)) == 4
-    assert result.success and "ways" in result.message
+    assert result.success and "which branch in" in result.message
     again = minimize(problem, QuadrantSelection(alternatives=4), seed=7)
     assert np.array_equal(again.pop.get("X"), result.pop.get("X"))
 
@@ -204,7 +211,9 @@ def test_the_letter_of_the_paper_says_when_it_finds_nothing():
     grid = OccupancyGrid([[0, 0, 0, 0], [1, 1, 1, 0], [0, 0, 0, 0]])
     result = minimize(GridPathProblem(grid, (0, 2), (0, 0)), QuadrantSelection(strict=True))
     assert result.X is None and result.success is False
-    assert result.message == "found no path: at 1 of 1 obstacle both cells beside the blocked step are closed as well"
+    assert result.message == (
+        "found no path: in 1 of 1 place where it met an obstacle, both steps beside the blocked one are illegal"
+    )
     assert minimize(GridPathProblem(grid, (0, 2), (0, 0)), QuadrantSelection()).success
 
 
