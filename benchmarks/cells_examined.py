@@ -6,9 +6,9 @@ The paper's six environments of 10 x 10 cells are lost; those here stand in for 
 counts of the rivals in the paper are those of the demo of PathFinding.js, which adds up the cells that are opened, closed and,
 by jumps, tested: each cell counts twice or more. That of quadrant selection is the authors' own tally. So two numbers stand
 here for each search: operations, counted as the demo does, and for quadrant selection each test of a step; and distinct free
-cells, each counted once whatever is done with it, which are the ones to compare. PACE is the paper's share of a rival's cells that
-quadrant selection saves, in per cent, from the printed counts and from distinct cells here. On the shipped maps all are medians
-over random queries at least a third of the map apart, with the robot's radius inflated.
+cells, each counted once whatever is done with it, which are the ones to compare. PACE is the paper's share of a rival's cells
+that quadrant selection saves, in per cent, from the printed counts and from distinct cells here. On the shipped maps all are
+medians over random queries at least a third of the map apart, with the robot's radius inflated.
 """
 
 from __future__ import annotations
