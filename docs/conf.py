@@ -57,7 +57,7 @@ html_static_path = ["_static"]
 html_css_files = ["custom.css"]
 html_show_sourcelink = False
 html_copy_source = False
-PLAIN_PAGES = ("index", "tutorial", "method", "algorithms", "exact", "maps", "command_line", "internals")
+PLAIN_PAGES = ("index", "tutorial", "method", "algorithms", "exact", "companions", "maps", "command_line", "internals")
 html_sidebars = {page: [] for page in PLAIN_PAGES}
 html_theme_options = {
     "logo": {"text": "pymoo_gridpath"},

@@ -215,6 +215,8 @@ def _search(w: World) -> dict[str, Call]:
     return {
         "ExactFront.plan": (algorithms.ExactFront().plan, {"problem": w.problem}),
         "ExactFront.parameters": (algorithms.ExactFront.parameters, {}),
+        "ExactFront.refuse": (algorithms.ExactFront.refuse, {"problem": w.problem}),
+        **_planners(w),
         "find_algorithm": (algorithms.find_algorithm, {"name": "nsga2"}),
         "hypervolume_ratio": (quality.hypervolume_ratio, {"F": front + 0.5, "front": front}),
         "igd_plus": (quality.igd_plus, {"F": front + 0.5, "front": front}),
@@ -234,6 +236,34 @@ def _search(w: World) -> dict[str, Call]:
             },
         ),
     }
+
+
+def _planners(w: World) -> dict[str, Call]:
+    """Calls of the planners that plan cells."""
+    problem = GridPathProblem(w.grid, **w.query, representation="cells")
+    arguments: dict[type, dict[str, Any]] = {
+        algorithms.QuadrantSelection: {
+            "speed": 0.5,
+            "turn_seconds": 0.1,
+            "alternatives": 2,
+            "smooth": False,
+            "max_paths": 9,
+            "strict": True,
+        },
+        algorithms.AStar: {"heuristic": "euclidean"},
+        algorithms.Dijkstra: {},
+        algorithms.BreadthFirst: {},
+        algorithms.BestFirst: {"heuristic": "manhattan"},
+        algorithms.JumpPointSearch: {"heuristic": "chebyshev"},
+        algorithms.OrthogonalJumpPointSearch: {},
+    }
+    found: dict[str, Call] = {}
+    for cls, given in arguments.items():
+        found[cls.__name__] = (cls, given)
+        found[f"{cls.__name__}.plan"] = (cls().plan, {"problem": problem})
+        found[f"{cls.__name__}.parameters"] = (cls.parameters, {})
+        found[f"{cls.__name__}.refuse"] = (cls.refuse, {"problem": problem})
+    return found
 
 
 CALLS = (_grids, _maps, _problems, _codings, _paths, _search)

@@ -21,18 +21,23 @@ INTERNAL = ("pymoo_gridpath.search", "pymoo_gridpath.testing")
 BUILDING_BLOCKS = (
     "Box",
     "Cell",
+    "CountedPath",
+    "CountedSearch",
     "Moves",
     "Plan",
+    "QuadrantPaths",
     "ReferenceFront",
     "Registry",
     "SequencePaths",
     "Sequences",
+    "Waypoints",
     "check_box",
     "check_grid",
     "check_paths",
     "check_size",
     "make_grid",
     "reference_planner",
+    "settled",
 )
 
 

@@ -10,20 +10,43 @@ from pymoo_gridpath.algorithms.paper import Setup, ahmed_deb_2013
 from pymoo_gridpath.algorithms.runs import minimize_runs
 from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.algorithms.termination import FirstLegalPath
-from pymoo_gridpath.planners import ExactFront, PathOutput
+from pymoo_gridpath.planners import (
+    AStar,
+    BestFirst,
+    BreadthFirst,
+    CountedPath,
+    Dijkstra,
+    ExactFront,
+    JumpPointSearch,
+    OrthogonalJumpPointSearch,
+    PathOutput,
+    QuadrantPaths,
+    QuadrantSelection,
+)
 from pymoo_gridpath.registry import ALGORITHMS
+from pymoo_gridpath.search.sight import Waypoints
 
 __all__ = [
     "ALGORITHMS",
     "CAPABILITIES",
+    "AStar",
+    "BestFirst",
+    "BreadthFirst",
     "Capability",
+    "CountedPath",
+    "Dijkstra",
     "ExactFront",
     "FirstLegalPath",
+    "JumpPointSearch",
+    "OrthogonalJumpPointSearch",
     "PathOutput",
+    "QuadrantPaths",
+    "QuadrantSelection",
     "Setup",
     "SmoothMOEAD",
     "StrengthAndSmoothness",
     "StrengthTournament",
+    "Waypoints",
     "ahmed_deb_2013",
     "capability_table",
     "find_algorithm",

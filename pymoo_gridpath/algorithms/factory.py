@@ -89,9 +89,9 @@ def make_algorithm(
     Raises
     ------
     CapabilityError
-        If there is no such algorithm or operator; if it cannot solve this problem (number of objectives, constraints, discrete
-        genes); if it has no smoothness tie-break but one is asked for; if an argument is unknown, means nothing, or is needed
-        and missing; or if a package it needs is not installed.
+        If there is no such algorithm or operator; if it cannot solve this problem (number of objectives, constraints, genes);
+        if it has no smoothness tie-break but one is asked for; if an argument is unknown, means nothing, or is needed and
+        missing; or if a package it needs is not installed.
 
     Examples
     --------
@@ -113,6 +113,7 @@ def make_algorithm(
     if isinstance(name, Algorithm):
         return _copied(name, given | kwargs)
     if not isinstance(row, Capability):
+        row.refuse(problem)
         return _planner(row, given | kwargs)
     return build(row, problem, pop_size, smoothness, operators, **kwargs)
 

@@ -2,8 +2,37 @@
 
 from __future__ import annotations
 
-from pymoo_gridpath.planners.base import PLANNERS, Plan, Planner, reference_planner
+from pymoo_gridpath.planners.base import PLANNERS, Plan, Planner, reference_planner, settled
+from pymoo_gridpath.planners.counted import (
+    AStar,
+    BestFirst,
+    BreadthFirst,
+    CountedPath,
+    CountedSearch,
+    Dijkstra,
+    JumpPointSearch,
+    OrthogonalJumpPointSearch,
+)
 from pymoo_gridpath.planners.display import PathOutput
 from pymoo_gridpath.planners.exact import ExactFront
+from pymoo_gridpath.planners.quadrant import QuadrantPaths, QuadrantSelection
 
-__all__ = ["PLANNERS", "ExactFront", "PathOutput", "Plan", "Planner", "reference_planner"]
+__all__ = [
+    "PLANNERS",
+    "AStar",
+    "BestFirst",
+    "BreadthFirst",
+    "CountedPath",
+    "CountedSearch",
+    "Dijkstra",
+    "ExactFront",
+    "JumpPointSearch",
+    "OrthogonalJumpPointSearch",
+    "PathOutput",
+    "Plan",
+    "Planner",
+    "QuadrantPaths",
+    "QuadrantSelection",
+    "reference_planner",
+    "settled",
+]

@@ -59,6 +59,9 @@ class Planner(Algorithm, ABC):
         Class attribute: whether it draws no random number, so that a study needs one run of it. Default True.
     reference : bool
         Class attribute: whether a Result with ``success`` is the whole front, which others are measured against. Default False.
+    turns_back : bool
+        Class attribute: whether its paths may turn back along every axis, so that it refuses codings of paths that never do.
+        Default False.
     takes_operators, takes_pop_size : bool
         Class attributes: whether its constructor takes ``operators`` and ``pop_size``, as `make_algorithm` does. Default False.
     success, message
@@ -67,7 +70,7 @@ class Planner(Algorithm, ABC):
     Raises
     ------
     CapabilityError
-        If an argument is unknown.
+        If an argument is unknown; when the run begins, if the paths may turn back and the coding knows none that do.
     GridPathError
         When the run begins, if the problem is no path problem; when the paths are there, if one is not legal.
 
@@ -89,6 +92,7 @@ class Planner(Algorithm, ABC):
 
     deterministic: ClassVar[bool] = True
     reference: ClassVar[bool] = False
+    turns_back: ClassVar[bool] = False
     takes_operators: ClassVar[bool] = False
     takes_pop_size: ClassVar[bool] = False
 
@@ -104,6 +108,15 @@ class Planner(Algorithm, ABC):
     def parameters(cls) -> dict[str, Any]:
         """Return what the constructor takes, with the defaults, for whoever knows the planner by its name alone."""
         return parameters_of(cls)
+
+    @classmethod
+    def refuse(cls, problem) -> None:
+        """Raise a CapabilityError if the planner cannot plan for a problem."""
+        if cls.turns_back and representation_of(problem).monotone:
+            raise CapabilityError(
+                f"{cls.__name__} plans paths that may turn back, which the {problem.representation.name} representation cannot "
+                f"code; give the problem representation='cells'"
+            )
 
     @abstractmethod
     def plan(self, problem) -> Plan:
@@ -122,6 +135,7 @@ class Planner(Algorithm, ABC):
 
     def _initialize_infill(self):
         representation = representation_of(self.problem)
+        self.refuse(self.problem)
         plan = self.plan(self.problem)
         if not isinstance(plan, Plan):
             raise GridPathError(f"the planner {self._name} returned {checks.shown(plan)}, expected a Plan")
@@ -166,6 +180,40 @@ class Planner(Algorithm, ABC):
     @property
     def _name(self) -> str:
         return type(self).__name__
+
+
+def settled(problem, sequences: Sequences, message: str) -> Plan:
+    """Return the plan of those of some paths that have a code and keep the limit of a problem, with a message that says so.
+
+    For planners that look at neither.
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+    sequences : Sequences
+        N legal paths, by the indices of cells that the representation's ``moves`` has.
+    message : str
+
+    Returns
+    -------
+    Plan
+        A success if a path is left.
+    """
+    representation, n = problem.representation, len(sequences.lengths)
+    fits = representation.fits(sequences)
+    if not fits.all():
+        longest = sequences.lengths.max()
+        message += (
+            f"; {n - fits.sum()} of {counted(n, 'path')} left out, the longest visits {longest} cells, a row has room for "
+            f"{representation.max_cells}"
+        )
+    X = representation.from_sequences(sequences.take(fits))
+    if problem.obstacles == "limit" and len(X):
+        keeps = problem.evaluate(X, return_values_of=["G"])[:, 0] <= 0
+        if not keeps.all():
+            message += f"; {len(X) - keeps.sum()} of {counted(n, 'path')} left out, over the potential limit"
+        X = X[keeps]
+    return Plan(X, len(X) > 0, message)
 
 
 #: The planners that are known by name, see `pymoo_gridpath.registry`; spelling and the name of the class are as good.

@@ -208,7 +208,7 @@ def downhill(terrain, cell):
 
 
 @kernel
-def room(array, n):
+def room(array: np.ndarray, n) -> np.ndarray:
     """Return an array with room for ``n`` numbers: itself, or a larger copy."""
     if n <= len(array):
         return array

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pymoo.optimize import minimize
 
+from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import GridPathProblem
@@ -21,7 +22,8 @@ class PlannerSuite:
     """Tests of a planner; a class of tests derives from it and has `make`.
 
     Paths must be legal, the Result must say how the search went, a planner that says that it is deterministic must be so, and
-    what has run must pickle, with every coding and every treatment of obstacles.
+    what has run must pickle, with every coding and every treatment of obstacles; codings that cannot say that a path turns back
+    are refused by a planner whose paths may.
     """
 
     def make(self) -> Planner:
@@ -43,6 +45,10 @@ class PlannerSuite:
     @pytest.mark.parametrize("obstacles", ["penalty", "constraint"])
     def test_paths_are_legal_in_every_coding(self, coding, obstacles):
         problem = self.problem(coding, obstacles)
+        if self.make().turns_back and problem.representation.monotone:
+            with pytest.raises(CapabilityError, match="representation='cells'"):
+                self.run(problem)
+            return
         result = self.run(problem)
         X = result.pop.get("X")
         assert len(X), "no path for a query that has one"
@@ -63,7 +69,7 @@ class PlannerSuite:
 
     def test_flags_are_truth_values_and_the_same_run_is_the_same(self):
         planner = self.make()
-        flags = planner.deterministic, planner.reference, planner.takes_operators, planner.takes_pop_size
+        flags = planner.deterministic, planner.reference, planner.turns_back, planner.takes_operators, planner.takes_pop_size
         assert all(isinstance(flag, bool) for flag in flags)
         problem = self.problem()
         first, second = (self.run(problem, 1 if not planner.deterministic else seed).pop.get("X") for seed in (1, 2))

@@ -1,0 +1,182 @@
+"""Line of sight: which cells see one another, and the waypoints of paths that follow such lines.
+
+A cell sees another where two tests hold. The straight line between their centres crosses no occupied cell, and passes no
+corner that may not be cut; and its digital line, the cells that stand for it on the grid, is a chain of legal steps. The second
+does not follow from the first: where corners may not be cut, rounding may lead diagonally past an obstacle that the line itself
+misses. With both, a polyline of such lines can be driven as it is, and as a path of cells.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.neighbourhood import HEADING_OF
+from pymoo_gridpath.search.moves import Moves
+
+
+class Waypoints(NamedTuple):
+    """The corners of a polyline whose every piece is a line of sight, from the start to the goal.
+
+    Attributes
+    ----------
+    cells : numpy.ndarray of int, shape (n, 2)
+        Cells (x, y).
+    metres : numpy.ndarray of float, shape (n, 2)
+        Their centres in the frame of the map.
+    """
+
+    cells: np.ndarray
+    metres: np.ndarray
+
+    @classmethod
+    def of(cls, grid: OccupancyGrid, cells: np.ndarray) -> Waypoints:
+        """Return the waypoints at cells (x, y) of a grid, shape (n, 2)."""
+        return cls(cells, grid.to_metres(cells))
+
+    @property
+    def length(self) -> float:
+        """Euclidean length in cells."""
+        return _length(self.cells)
+
+    @property
+    def length_m(self) -> float:
+        """Euclidean length in metres."""
+        return _length(self.metres)
+
+
+def _length(points: np.ndarray) -> float:
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def visible(moves: Moves, cells: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return whether each cell sees another, both tests, bool, shape (N,).
+
+    Parameters
+    ----------
+    moves : Moves
+        Both tests are of its steps, so that where it has not all headings, lines keep to those that it has.
+    cells, others : numpy.ndarray of int, shape (N,)
+        Indices of free cells. The digital line is that from the cell to the other, which need not be the one back.
+    """
+    cells, others = (np.ascontiguousarray(index, dtype=np.int64) for index in (cells, others))
+    return _visible(moves.legal, moves.offsets, moves.width, cells, others)
+
+
+def digital_line(moves: Moves, cell: int, other: int) -> np.ndarray:
+    """Return the indices of the cells that stand for the line from a cell to another, int64, shape (n + 1,).
+
+    Cell k of them is the one nearest to the point k steps of n along it, halves rounded up, where n is the larger of the
+    distances in x and y.
+    """
+    line, n = append_line(moves.width, cell, other, np.array([cell]), 1)
+    return line[:n].copy()
+
+
+@kernel
+def _visible(legal, offsets, width, cells, others):
+    found = np.zeros(len(cells), dtype=np.bool_)
+    for k in range(len(cells)):
+        found[k] = sees(legal, offsets, width, cells[k], others[k])
+    return found
+
+
+@kernel
+def sees(legal, offsets, width, cell, other):
+    """Return whether a cell sees another; see `visible`."""
+    return line_is_free(legal, offsets, width, cell, other) and chain_is_legal(legal, width, cell, other)
+
+
+@kernel
+def line_is_free(legal, offsets, width, cell, other):
+    """Return whether the line between the centres of two cells leads from cell to cell by legal steps.
+
+    It leaves a cell through a side, or through a corner that it meets exactly: then the step is diagonal, and legal under the
+    same rule for corners.
+    """
+    dx, dy = other % width - cell % width, other // width - cell // width
+    nx, ny = abs(dx), abs(dy)
+    sx, sy = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
+    ix = iy = 0
+    while ix < nx or iy < ny:
+        # Twice the distances along the line to the next side in x and in y, as fractions of the same whole.
+        ahead = (2 * ix + 1) * ny - (2 * iy + 1) * nx
+        stepx, stepy = (sx if ahead <= 0 else 0), (sy if ahead >= 0 else 0)
+        m = HEADING_OF[stepy + 1, stepx + 1]
+        if not (legal[cell] >> m) & 1:
+            return False
+        cell += offsets[m]
+        ix += abs(stepx)
+        iy += abs(stepy)
+    return True
+
+
+@kernel
+def chain_is_legal(legal, width, cell, other):
+    """Return whether the digital line from a cell to another is a chain of legal steps."""
+    x, y = cell % width, cell // width
+    dx, dy = other % width - x, other // width - y
+    n = max(abs(dx), abs(dy))
+    before_x = before_y = 0
+    for k in range(1, n + 1):
+        after_x, after_y = (2 * k * dx + n) // (2 * n), (2 * k * dy + n) // (2 * n)
+        m = HEADING_OF[after_y - before_y + 1, after_x - before_x + 1]
+        if not (legal[(y + before_y) * width + x + before_x] >> m) & 1:
+            return False
+        before_x, before_y = after_x, after_y
+    return True
+
+
+@kernel
+def append_line(width, cell, other, path, n):
+    """Append the digital line from a cell to another, without the former, to the ``n`` cells of a path; return both anew."""
+    x, y = cell % width, cell // width
+    dx, dy = other % width - x, other // width - y
+    steps = max(abs(dx), abs(dy))
+    if n + steps > len(path):
+        longer = np.empty(2 * (n + steps), dtype=path.dtype)
+        longer[:n] = path[:n]
+        path = longer
+    for k in range(1, steps + 1):
+        path[n] = (y + (2 * k * dy + steps) // (2 * steps)) * width + x + (2 * k * dx + steps) // (2 * steps)
+        n += 1
+    return path, n
+
+
+@kernel
+def farthest_seen(legal, offsets, width, path):
+    """Return which cells of a path are left when each sees the next: the first, the last that it sees, and so on.
+
+    Parameters
+    ----------
+    path : int64, shape (n,)
+        Indices of cells, each of which a legal step leads to from the one before.
+
+    Returns
+    -------
+    int64, shape (m,)
+        Their indices in the grid. What a cell sees along a path comes and goes, so that the search is from the end.
+    """
+    kept = np.empty(len(path), dtype=np.int64)
+    kept[0] = path[0]
+    n, i = 1, 0
+    while i < len(path) - 1:
+        j = len(path) - 1
+        while j > i + 1 and not sees(legal, offsets, width, path[i], path[j]):
+            j -= 1
+        i = j
+        kept[n] = path[i]
+        n += 1
+    return kept[:n].copy()
+
+
+@kernel
+def along(width, waypoints):
+    """Return the cells of the digital lines from each waypoint to the next, int64, shape (n,)."""
+    path, n = waypoints[:1].copy(), 1
+    for k in range(len(waypoints) - 1):
+        path, n = append_line(width, waypoints[k], waypoints[k + 1], path, n)
+    return path[:n].copy()

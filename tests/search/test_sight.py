@@ -1,0 +1,152 @@
+"""Line of sight against geometry with fractions, cell by cell."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pymoo_gridpath import OccupancyGrid
+from pymoo_gridpath.representations import make_representation
+from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.sight import Waypoints, along, chain_is_legal, digital_line, farthest_seen, line_is_free, visible
+from pymoo_gridpath.testing.reference import broken_cells, is_legal, walk
+
+
+@st.composite
+def grids(draw):
+    shape = draw(st.integers(1, 9)), draw(st.integers(1, 9))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    return OccupancyGrid(rng.random(shape) < draw(st.sampled_from([0.1, 0.3])), corner_cutting=draw(st.booleans())), rng
+
+
+def crosses(a, b, cell):
+    """Whether the open segment between two centres meets the interior of a cell, in fractions: clipping, axis by axis."""
+    low, high = Fraction(0), Fraction(1)
+    for start, end, centre in zip(a, b, cell, strict=True):
+        low_side, high_side = Fraction(2 * centre - 1, 2), Fraction(2 * centre + 1, 2)
+        if start == end:
+            if not low_side < start < high_side:
+                return False
+            continue
+        ends = sorted(((low_side - start) / (end - start), (high_side - start) / (end - start)))
+        low, high = max(low, ends[0]), min(high, ends[1])
+    return low < high
+
+
+def corners_on(a, b):
+    """The corners of cells that a segment between two centres meets: the four cells around each."""
+    (xa, ya), (xb, yb) = a, b
+    for x in range(min(xa, xb), max(xa, xb)):
+        t = (Fraction(2 * x + 1, 2) - xa) / (xb - xa)
+        y = ya + t * (yb - ya)
+        if y.denominator == 2:
+            row = math.floor(y)
+            yield [(i, j) for i in (x, x + 1) for j in (row, row + 1)]
+
+
+def is_free(grid, a, b):
+    """The first test, by definition."""
+    xs, ys = (range(min(u, v), max(u, v) + 1) for u, v in zip(a, b, strict=True))
+    if any(grid.occupied[y, x] and crosses(a, b, (x, y)) for x in xs for y in ys):
+        return False
+    return grid.corner_cutting or not any(grid.occupied[y, x] for corner in corners_on(a, b) for x, y in corner)
+
+
+def nearest_cells(a, b):
+    """The digital line, by definition."""
+    n = max(abs(b[0] - a[0]), abs(b[1] - a[1]))
+    return [tuple(math.floor(u + Fraction(k * (v - u), n) + Fraction(1, 2)) for u, v in zip(a, b)) for k in range(n + 1)]  # noqa: B905
+
+
+@settings(max_examples=30)
+@given(grids())
+def test_both_tests_are_what_they_say(grid_and_rng):
+    grid, _ = grid_and_rng
+    moves = Moves(grid)
+    free = [(int(x), int(y)) for y, x in np.argwhere(~grid.occupied)]
+    for a in free:
+        for b in free[:: max(1, len(free) // 12)]:
+            ends = moves.index(a), moves.index(b)
+            line = moves.cells(digital_line(moves, *ends)).tolist()
+            assert line == ([list(cell) for cell in nearest_cells(a, b)] if a != b else [list(a)])
+            expected = is_free(grid, a, b), broken_cells([tuple(cell) for cell in line], grid) == 0
+            found = (
+                line_is_free(moves.legal, moves.offsets, moves.width, *ends),
+                chain_is_legal(moves.legal, moves.width, *ends),
+            )
+            assert (bool(found[0]), bool(found[1])) == expected
+            assert visible(moves, np.array(ends[:1]), np.array(ends[1:])).tolist() == [all(expected)]
+            # The line has no direction, its digital line has.
+            assert line_is_free(moves.legal, moves.offsets, moves.width, *ends[::-1]) == expected[0]
+
+
+def test_a_free_line_may_have_a_digital_line_that_cuts_a_corner():
+    large = OccupancyGrid(np.random.default_rng(1).random((20, 20)) < 0.2, corner_cutting=False)
+    moves = Moves(large)
+    cells = np.flatnonzero(~large.occupied.ravel())
+    ends = np.array(np.meshgrid(cells, cells)).reshape(2, -1).T
+    lines = [line_is_free(moves.legal, moves.offsets, 20, *pair) for pair in ends]
+    assert sum(lines) > visible(moves, *ends.T).sum() > 0.5 * sum(lines)
+    cutting = large.replace(corner_cutting=True)
+    moves = Moves(cutting)
+    assert visible(moves, *ends.T).sum() == sum(line_is_free(moves.legal, moves.offsets, 20, *pair) for pair in ends)
+
+
+@settings(max_examples=100)
+@given(grids())
+def test_shortened_paths_are_legal_see_on_and_are_no_longer(grid_and_rng):
+    grid, rng = grid_and_rng
+    free = np.argwhere(~grid.occupied)[:, ::-1]
+    if len(free) < 2:
+        return
+    start, goal = (tuple(int(v) for v in cell) for cell in free[rng.choice(len(free), 2, replace=False)])
+    cells = walk(grid, start, goal, rng)
+    if cells is None:
+        return
+    moves = Moves(grid)
+    path = np.array([moves.index(cell) for cell in cells])
+    kept = farthest_seen(moves.legal, moves.offsets, moves.width, path)
+    assert visible(moves, kept[:-1], kept[1:]).all()
+    again = [tuple(cell) for cell in moves.cells(along(moves.width, kept)).tolist()]
+    assert is_legal(again, grid, start, goal) or len(set(again)) < len(again)
+    assert broken_cells(again, grid) == 0 and again[0] == start and again[-1] == goal
+    # Each jump is to the last cell that is seen.
+    place = [list(path).index(cell) for cell in kept]
+    for i, j in pairwise(place):
+        assert not visible(moves, np.full(len(path) - 1 - j, path[i]), path[j + 1 :]).any()
+
+    def octile(line):
+        return sum(math.dist(a, b) for a, b in pairwise(line))
+
+    waypoints = Waypoints.of(grid, moves.cells(kept))
+    assert waypoints.length <= octile(again) + 1e-9 <= octile(cells) + 2e-9
+
+
+def test_waypoints_are_in_cells_and_in_metres():
+    grid = OccupancyGrid(np.zeros((5, 5)), resolution=0.5, origin=(10.0, -2.0, 0.0))
+    waypoints = Waypoints.of(grid, np.array([[0, 0], [3, 4], [4, 4]]))
+    assert waypoints.length == 6.0 and waypoints.length_m == 3.0
+    assert waypoints.metres.tolist() == [[10.25, -1.75], [11.75, 0.25], [12.25, 0.25]]
+
+
+def test_lines_keep_to_the_headings_of_the_steps():
+    grid = OccupancyGrid(np.zeros((6, 6)))
+    moves = make_representation("integer", grid, (0, 0), (5, 5), "x").moves
+    cells = np.array([0, 35, 3])
+    assert visible(moves, cells, np.array([35, 0, 33])).tolist() == [True, False, True]
+
+
+@pytest.mark.parametrize("pair", [(0, 11), (3, 8), (5, 5)])
+def test_kernels_give_the_same_uncompiled(pair):
+    moves = Moves(OccupancyGrid([[0, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]]))
+    for kernel, arguments in (
+        (line_is_free, (moves.legal, moves.offsets, moves.width, *pair)),
+        (chain_is_legal, (moves.legal, moves.width, *pair)),
+    ):
+        assert getattr(kernel, "py_func", kernel)(*arguments) == kernel(*arguments)
