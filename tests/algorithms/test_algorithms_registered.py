@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.metadata import EntryPoint
+
 import numpy as np
 import pytest
 from pymoo.algorithms.moo.moead import MOEAD
@@ -20,6 +22,16 @@ from pymoo_gridpath.registry import register
 def forget(monkeypatch):
     monkeypatch.setattr(ALGORITHMS, "_known", dict(ALGORITHMS._known))
     monkeypatch.setattr(ALGORITHMS, "_names", dict(ALGORITHMS._names))
+
+
+def test_an_installed_package_that_is_broken_is_named_and_hinders_nobody(make_problem, monkeypatch):
+    points = {"mine": EntryPoint("mine", f"{__name__}:NSGA2", "x"), "gone": EntryPoint("gone", "no_such_module:X", "x")}
+    monkeypatch.setattr(ALGORITHMS, "_entry_points", points)
+    assert find_algorithm("Mine").takes_operators
+    with pytest.warns(UserWarning, match="'gone'"), pytest.raises(CapabilityError, match="did you mean 'mine'"):
+        find_algorithm("mines")
+    with pytest.raises(CapabilityError, match="the algorithm 'gone' of the installed package cannot be imported from no_such"):
+        make_algorithm("gone", make_problem())
 
 
 def test_a_registered_algorithm_works_by_name(make_problem):
