@@ -14,13 +14,14 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid
-from pymoo_gridpath.neighbourhood import HEADING_OF
+from pymoo_gridpath.neighbourhood import HEADING_OF, turn_units
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.route import DX, DY, room
 from pymoo_gridpath.search.sequences import append_without_loops
 
 #: Where a stretch leads that ends at the goal, or nowhere.
 GOAL, NOWHERE = np.int64(-1), np.int64(-2)
+TURNS = turn_units()
 
 
 def _scans() -> tuple[np.ndarray, np.ndarray]:
@@ -313,10 +314,8 @@ def _heading(legal, offsets, cell, other):
 @kernel
 def turn_of(before, after):
     """Return the turn between two headings in units of 45 degrees; 0 if there is none before or after."""
-    if before < 0 or after < 0:
-        return 0
-    apart = abs(after - before)
-    return min(apart, 8 - apart)
+    # Of no heading before, -1, there is a last row.
+    return TURNS[before, after] if after >= 0 else 0
 
 
 @kernel
