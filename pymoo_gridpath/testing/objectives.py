@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import pickle
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -19,6 +21,8 @@ from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.problems import GridPathProblem
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.testing.enumeration import STEPS, enumerate_paths, non_dominated, turn_between
+
+_HEADINGS = {step: heading for heading, step in enumerate(STEPS)}
 
 
 class ObjectiveSuite:
@@ -52,8 +56,7 @@ class ObjectiveSuite:
         for grid in self.grids():
             start, goal = (0, 0), (grid.width - 1, grid.height - 1)
             coding = CellSequence(grid, start, goal, max_cells=int((~grid.occupied).sum()))
-            paths = enumerate_paths(grid, start, goal)
-            yield grid, GridPathProblem(grid, start, goal, coding, [self.objective]), [path.cells for path in paths]
+            yield grid, GridPathProblem(grid, start, goal, coding, [self.objective]), _paths(grid)
 
     def test_it_has_a_name_and_a_label(self):
         assert make_objectives(self.objective) == (self.objective,)
@@ -86,7 +89,7 @@ class ObjectiveSuite:
         if self.objective.combine == "sum" and not self.objective.additive:
             pytest.skip("it scores paths by a rule of its own")
         for grid, problem, paths in self._queries():
-            expected = [slow_score(self.objective, grid, cells) for cells in paths]
+            expected = slow_scores(self.objective, grid, paths)
             np.testing.assert_allclose(_scores(problem, paths), expected, rtol=1e-9, atol=1e-9)
 
     def test_a_batch_scores_as_its_paths_alone(self):
@@ -123,7 +126,7 @@ class ObjectiveSuite:
                     with pytest.raises(CapabilityError):
                         exact_front(problem)
                     continue
-                rows = [[slow_score(one, grid, cells) for one in problem.objectives] for cells in paths]
+                rows = np.column_stack([slow_scores(one, grid, paths) for one in problem.objectives])
                 # Sums of the same costs in another order count as the same.
                 expected = non_dominated(tuple(row) for row in np.round(rows, 9).tolist())
                 found = exact_front(problem)
@@ -140,17 +143,29 @@ class ObjectiveSuite:
         assert (problem.decode(X).interfering_cells == 0).all()
 
 
-def slow_score(objective: Objective, grid: OccupancyGrid, cells: tuple[Cell, ...]) -> float:
-    """Return what a legal path costs by what an objective says, one cell and one step after another."""
+@functools.lru_cache(maxsize=16)
+def _paths(grid: OccupancyGrid) -> list[tuple[Cell, ...]]:
+    """Return all paths from the bottom left to the top right."""
+    return [path.cells for path in enumerate_paths(grid, (0, 0), (grid.width - 1, grid.height - 1))]
+
+
+def slow_scores(objective: Objective, grid: OccupancyGrid, paths: Sequence[tuple[Cell, ...]]) -> list[float]:
+    """Return what legal paths cost by what an objective says, one cell and one step after another."""
     field, moves = objective.field(grid), objective.moves(grid)
-    visited = [] if field is None else [float(np.asarray(field)[y, x]) for x, y in cells]
-    if objective.combine != "sum":
-        return min(visited) if objective.combine == "least" else max(visited)
-    headings = [STEPS.index((b[0] - a[0], b[1] - a[1])) for a, b in itertools.pairwise(cells)]
-    steps = np.zeros(2) if moves is None else np.asarray(moves, dtype=float)
-    for heading, (x, y) in zip(headings, cells[1:], strict=True):
-        visited.append(float(steps[heading % 2] if steps.ndim == 1 else steps[heading, y, x]))
-    return sum(visited) + objective.turn_cost * sum(itertools.starmap(turn_between, itertools.pairwise(headings)))
+    costs = None if field is None else np.asarray(field, dtype=float).tolist()
+    steps = (0.0, 0.0) if moves is None else np.asarray(moves, dtype=float).tolist()
+    by_cell = np.ndim(steps[0]) > 0
+
+    def score(cells) -> float:
+        visited = [] if costs is None else [costs[y][x] for x, y in cells]
+        if objective.combine != "sum":
+            return min(visited) if objective.combine == "least" else max(visited)
+        headings = [_HEADINGS[b[0] - a[0], b[1] - a[1]] for a, b in itertools.pairwise(cells)]
+        for heading, (x, y) in zip(headings, cells[1:], strict=True):
+            visited.append(steps[heading][y][x] if by_cell else steps[heading % 2])
+        return sum(visited) + objective.turn_cost * sum(itertools.starmap(turn_between, itertools.pairwise(headings)))
+
+    return [score(cells) for cells in paths]
 
 
 def _scores(problem: GridPathProblem, paths) -> np.ndarray:

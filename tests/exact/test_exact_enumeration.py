@@ -118,7 +118,7 @@ def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
 
 def test_the_front_of_rows_that_are_too_short_equals_enumeration(solvable_seeds):
     n_cut = dict.fromkeys((1, 2, 3), 0)
-    for seed in solvable_seeds:
+    for seed in solvable_seeds[::2]:
         grid, start, goal, representation = random_case(seed)
         if representation != "cells":
             continue
@@ -142,7 +142,7 @@ def test_the_front_of_rows_that_are_too_short_equals_enumeration(solvable_seeds)
                 if "turn" not in problem.objective_names:
                     assert_best(found.F, coding.to_sequences(found.X).lengths, out["turn"], short, problem.objective_names)
                 n_cut[problem.n_obj] += "with at most" in found.message
-    assert n_cut[2] > 100 and n_cut[3] > 100
+    assert n_cut[2] > 50 and n_cut[3] > 50
 
 
 def magnitudes(random_state, shape):

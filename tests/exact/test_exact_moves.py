@@ -230,7 +230,7 @@ def guarded(size, seed):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_fronts_equal_those_of_a_plain_label_search_on_larger_grids(seed):
-    size = 20 + 4 * seed
+    size = 20 + 2 * seed
     grid, ten, guards = guarded(size, seed)
     draw = np.random.default_rng(100 + seed)
     up = Ways("climb", moves=climb(draw.integers(0, 4, size=grid.shape).astype(float)))
