@@ -9,8 +9,10 @@ import signal
 import subprocess
 import sys
 import time
+from unittest import mock
 
 import pytest
+from matplotlib.figure import Figure
 
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
@@ -25,8 +27,12 @@ def run_process(*arguments, cwd=None, **options):
 
 
 def run(*arguments):
-    """What a process would do, without the seconds that it takes to start."""
-    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+    """What a process would do, without the seconds that it takes to start and to draw: figures are empty."""
+    with (
+        contextlib.redirect_stdout(io.StringIO()) as out,
+        contextlib.redirect_stderr(io.StringIO()) as err,
+        mock.patch.object(Figure, "savefig", lambda figure, *args, **kwargs: None),
+    ):
         status = main([str(argument) for argument in arguments])
     return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())
 
