@@ -13,13 +13,14 @@ from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.planners.base import Plan, Planner, settled
 from pymoo_gridpath.registry import register
 from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.search.alternatives import GOAL, NOWHERE, cost_of, measure, quickest, unfold
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.quadrant import GOAL, NOWHERE, Branches, branches, cost_of, measure, octile, quickest, unfold
+from pymoo_gridpath.search.quadrant import Branches, branches, octile
 from pymoo_gridpath.search.sequences import cut_loops
 from pymoo_gridpath.search.sight import Waypoints, along, farthest_seen
 
 # More alternatives are no list that anybody reads, and take gigabytes.
-_MOST_PATHS = 10_000
+_MOST_PATHS = 1000
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class QuadrantSelection(Planner):
     CapabilityError
         If an argument is unknown; when the run begins, if the coding knows only paths that never turn back.
     GridPathError
-        If a number is not positive, alternatives is larger than max_paths, or max_paths larger than 10,000.
+        If a number is not positive, alternatives is larger than max_paths, or max_paths larger than 1,000.
 
     Notes
     -----
