@@ -40,13 +40,17 @@ def random_query(rng: np.random.Generator, least: int, most: int, density: float
             return query
 
 
-def query_on(grid: OccupancyGrid, rng: np.random.Generator) -> tuple[OccupancyGrid, Cell, Cell] | None:
-    """Return a grid and a random query on it, or None if two cells were drawn that no path joins, or there are none."""
+def query_on(grid: OccupancyGrid, rng: np.random.Generator, apart: float = 0.0) -> tuple[OccupancyGrid, Cell, Cell] | None:
+    """Return a grid and a random query on it, or None if two cells were drawn that no path joins, or there are none.
+
+    In x or in y they must be at least the share ``apart`` of the larger side away from one another.
+    """
     free = np.argwhere(~grid.occupied)
     if len(free) < 2:
         return None
     (ya, xa), (yb, xb) = free[rng.choice(len(free), 2, replace=False)].tolist()
-    return (grid, (xa, ya), (xb, yb)) if grid.regions[ya, xa] == grid.regions[yb, xb] else None
+    far = max(abs(xa - xb), abs(ya - yb)) >= apart * max(grid.shape)
+    return (grid, (xa, ya), (xb, yb)) if far and grid.regions[ya, xa] == grid.regions[yb, xb] else None
 
 
 def legal_steps(grid: OccupancyGrid, cell: Cell, headings: Iterable[int] = range(8)) -> Iterator[tuple[int, Cell]]:
