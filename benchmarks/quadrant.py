@@ -63,7 +63,7 @@ def try_all(name: str, queries) -> None:
     for grid, start, goal in queries:
         cells, found = plan(grid, start, goal)
         n, solved, legal = n + 1, solved + bool(cells), legal + is_legal(cells, grid, start, goal)
-        alternatives.append(float(found.n_alternatives))
+        alternatives.append(float(min(found.n_alternatives, 10**300)))
         ratios.append(length(cells) / grid.shortest_length(start, goal))
     print(
         f"{name}: {solved} of {n} solved, {legal} legal; length over the shortest {np.median(ratios):.3f} in the median, "

@@ -147,6 +147,15 @@ def test_the_letter_of_the_paper_says_when_it_finds_nothing():
     assert minimize(GridPathProblem(grid, (0, 2), (0, 0)), QuadrantSelection()).success
 
 
+def test_the_number_of_alternatives_has_no_bound():
+    """Each wall across the way is passed on either side, and doubles them."""
+    occupied = np.zeros((7, 603), dtype=bool)
+    occupied[2:5, 1::2] = True
+    _, planned, found = plan(OccupancyGrid(occupied), (0, 3), (602, 3), max_paths=4)
+    assert found.n_alternatives == 2**301 and len(found.raw) == 4
+    assert planned.message == "found about 10^90 paths, which branch in 301 places"
+
+
 def test_codings_that_cannot_turn_back_are_refused():
     problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "integer")
     said = "QuadrantSelection plans paths that may turn back, which the integer representation cannot code"
