@@ -31,6 +31,7 @@ from pymoo_gridpath.algorithms import (
 )
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.representations import CellSequence
+from pymoo_gridpath.testing.enumeration import query_on
 from pymoo_gridpath.testing.reference import length
 
 # Top row first: "S" the start, "G" the goal, "#" occupied.
@@ -140,12 +141,11 @@ def main() -> None:
     medians: dict[str, np.ndarray] = {}
     for item in shipped_maps():
         grid = load_map(item.path).inflate(item.radius)
-        free, found_here = np.argwhere(~grid.occupied), []
+        found_here: list[list] = []
         while len(found_here) < arguments.queries:
-            (ya, xa), (yb, xb) = free[rng.choice(len(free), 2, replace=False)].tolist()
-            far = max(abs(xa - xb), abs(ya - yb)) * 3 >= max(grid.shape)
-            if far and grid.regions[ya, xa] == grid.regions[yb, xb]:
-                found_here.append(list(examine(grid, (xa, ya), (xb, yb)).values()))
+            query = query_on(grid, rng, apart=1 / 3)
+            if query is not None:
+                found_here.append(list(examine(*query).values()))
         medians[item.name] = np.median(found_here, axis=0)
     stated = f"Shipped maps, {arguments.queries} queries each"
     show(

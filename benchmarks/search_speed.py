@@ -45,9 +45,14 @@ def main() -> None:
 
     lengths = np.tile(np.where(IS_DIAGONAL, DIAGONAL, STRAIGHT), (9, 1)).astype(np.int64)
     step, field = np.stack([lengths, 0 * lengths]), np.zeros((2, moves.n_cells), dtype=np.int64)
+
+    def to_the_goal(problem: GridPathProblem, heuristic: str):
+        return best_first(moves, moves.index(problem.start), moves.index(problem.goal), heuristic)
+
     searches: dict[str, Callable[[GridPathProblem], object]] = {
         "Dijkstra, to all cells": lambda problem: backward_costs(moves, step, field, moves.index(problem.goal)),
-        "Dijkstra, to the goal": lambda problem: best_first(moves, moves.index(problem.start), moves.index(problem.goal)),
+        "Dijkstra, to the goal": lambda problem: to_the_goal(problem, "none"),
+        "A*, octile, kernel": lambda problem: to_the_goal(problem, "octile"),
         "A*, octile": AStar().plan,
         "jump points": JumpPointSearch().plan,
         "quadrant selection": QuadrantSelection().plan,

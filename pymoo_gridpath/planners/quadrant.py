@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,13 +14,17 @@ from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.planners.base import Plan, Planner, settled
 from pymoo_gridpath.registry import register
 from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.search.alternatives import GOAL, NOWHERE, cost_of, measure, quickest, unfold
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.quadrant import GOAL, NOWHERE, Branches, branches, cost_of, measure, octile, quickest, unfold
+from pymoo_gridpath.search.quadrant import Branches, branches, octile
 from pymoo_gridpath.search.sequences import cut_loops
 from pymoo_gridpath.search.sight import Waypoints, along, farthest_seen
 
+# Larger numbers of paths say no more than their size.
+_MOST_WRITTEN = 10**12
+
 # More alternatives are no list that anybody reads, and take gigabytes.
-_MOST_PATHS = 10_000
+_MOST_PATHS = 1000
 
 
 @dataclass(frozen=True)
@@ -76,7 +81,7 @@ class QuadrantSelection(Planner):
     max_paths : int, default 64
         How many alternatives to list in ``found``. They are the quickest by the time of the walk that finds them; loops are cut
         then, and the list sorted by the time of what is left. So the first is the quickest of all where there are no more
-        alternatives than that, and nearly always where there are.
+        alternatives than that, and nearly always where there are. Time and memory grow with it.
     strict : bool, default False
         Whether to keep to the letter of the paper: at an obstacle only the two cells beside the blocked step are tried, and no
         obstacle is followed. It often finds nothing, and then says so.
@@ -93,7 +98,7 @@ class QuadrantSelection(Planner):
     CapabilityError
         If an argument is unknown; when the run begins, if the coding knows only paths that never turn back.
     GridPathError
-        If a number is not positive, alternatives is larger than max_paths, or max_paths larger than 10,000.
+        If a number is not positive, alternatives is larger than max_paths, or max_paths larger than 1,000.
 
     Notes
     -----
@@ -193,7 +198,7 @@ class QuadrantSelection(Planner):
             return "met no obstacle"
         places = counted(len(found.hits), "place")
         if self.found.n_alternatives:
-            return f"found {counted(self.found.n_alternatives, 'path')}, which branch in {places}"
+            return f"found {_counted_paths(self.found.n_alternatives)}, which branch in {places}"
         stuck = np.count_nonzero((found.to[1::2] == NOWHERE) & (found.to[2::2] == NOWHERE))
         return f"found no path: in {stuck} of {places} where it met an obstacle, both steps beside the blocked one are illegal"
 
@@ -214,6 +219,11 @@ def _smoothed(path: np.ndarray, moves: Moves) -> tuple[np.ndarray, np.ndarray]:
         # Lines may cross one another; what is left then is smoothed anew.
         if len(path) == len(cells):
             return waypoints, cells
+
+
+def _counted_paths(n: int) -> str:
+    """Return the number of paths in words; of very many, which Python itself may refuse to write out, the power of ten."""
+    return counted(n, "path") if n < _MOST_WRITTEN else f"about 10^{math.floor(math.log10(2) * (n.bit_length() - 1))} paths"
 
 
 def _count(to: np.ndarray, order: np.ndarray) -> int:

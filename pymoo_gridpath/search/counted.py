@@ -10,6 +10,7 @@ from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.grid import SQRT2
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.route import DX, DY
 from pymoo_gridpath.search.shortest import grown
 
 #: Lengths of steps in whole numbers, which order all lengths of paths across up to 10,000 x 10,000 cells correctly.
@@ -117,6 +118,7 @@ def _best_first(legal, offsets, width, start, goal, rule, greedy):
         if n + 8 > len(heap):
             heap = grown(heap)
         steps, so_far = legal[cell], cost[cell]
+        dx, dy = gx - cell % width, gy - cell // width
         for m in range(8):
             if not (steps >> m) & 1:
                 continue
@@ -131,7 +133,7 @@ def _best_first(legal, offsets, width, start, goal, rule, greedy):
                 counts[0] += 1
             cost[other] = total
             came[other] = m
-            left = estimate(rule, gx - other % width, gy - other // width)
+            left = estimate(rule, dx - DX[m], dy - DY[m])
             if greedy:
                 push(heap, n, left, total, other)
             else:

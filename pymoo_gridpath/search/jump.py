@@ -11,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
-from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.search.counted import DIAGONAL, HEURISTICS, STRAIGHT, Found, estimate
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.shortest import grown
+from pymoo_gridpath.search.sight import towards
 
 # The rules by which a jump ends: the two rules for corners, and straight steps alone.
 _CUTTING, _NOT_CUTTING, _ORTHOGONAL = np.int64(0), np.int64(1), np.int64(2)
@@ -158,7 +158,8 @@ def _jump_points(legal, offsets, width, start, goal, rule, heuristic):
             break
         if n + 8 > len(heap):
             heap = grown(heap)
-        kept = kept_headings(legal, offsets, cell, _heading(width, came[cell], cell), rule)
+        m = 8 if came[cell] < 0 else towards(width, came[cell], cell)
+        kept = kept_headings(legal, offsets, cell, m, rule)
         for m in range(8):
             if not _has(kept, m):
                 continue
@@ -182,15 +183,6 @@ def _jump_points(legal, offsets, width, start, goal, rule, heuristic):
 
 
 @kernel
-def _heading(width, before, cell):
-    """Return the heading from one cell straight or diagonally to another; 8 if there is none before."""
-    if before < 0:
-        return 8
-    dx, dy = cell % width - before % width, cell // width - before // width
-    return HEADING_OF[1 + int(dy > 0) - int(dy < 0), 1 + int(dx > 0) - int(dx < 0)]
-
-
-@kernel
 def _between(offsets, width, came, start, goal, reached):
     """Return the cells from the start to the goal, those that were jumped over included."""
     n = 1 if reached else 0
@@ -204,7 +196,7 @@ def _between(offsets, width, came, start, goal, reached):
     for k in range(n - 1, -1, -1):
         path[k] = cell
         if cell != start:
-            cell -= offsets[_heading(width, before, cell)]
+            cell -= offsets[towards(width, before, cell)]
             if cell == before and cell != start:
                 before = came[cell]
     return path

@@ -81,8 +81,14 @@ def heading_between(terrain, cell, other):
     """Return the heading of the legal step from one cell to another, or -1."""
     if cell < 0 or cell >= len(terrain.legal):
         return -1
+    return step_heading(terrain.legal, terrain.offsets, cell, other)
+
+
+@kernel
+def step_heading(legal, offsets, cell, other):
+    """Return the heading of the legal step from a cell of the grid to another, or -1."""
     for m in range(8):
-        if (terrain.legal[cell] >> m) & 1 and cell + terrain.offsets[m] == other:
+        if (legal[cell] >> m) & 1 and cell + offsets[m] == other:
             return m
     return -1
 

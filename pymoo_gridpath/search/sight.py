@@ -180,3 +180,15 @@ def along(width, waypoints):
     for k in range(len(waypoints) - 1):
         path, n = append_line(width, waypoints[k], waypoints[k + 1], path, n)
     return path[:n].copy()
+
+
+@kernel
+def towards(width, cell, other):
+    """Return the heading of the signs of what is left in x and y from a cell to another; -1 if nothing is."""
+    return sign_heading(other % width - cell % width, other // width - cell // width)
+
+
+@kernel
+def sign_heading(dx, dy):
+    """Return the heading of the signs of a distance in x and in y; -1 if both are 0."""
+    return HEADING_OF[1 + int(dy > 0) - int(dy < 0), 1 + int(dx > 0) - int(dx < 0)]

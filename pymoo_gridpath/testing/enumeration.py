@@ -1,4 +1,4 @@
-"""All legal paths of a small grid, and fronts of what they score, in plain Python."""
+"""All legal paths of a small grid, and fronts of what they score, in plain Python; and random queries."""
 
 from __future__ import annotations
 
@@ -20,6 +20,37 @@ class EnumeratedPath(NamedTuple):
     straight: int
     diagonal: int
     turn: int
+
+
+def random_query(rng: np.random.Generator, least: int, most: int, density: float = 0.5) -> tuple[OccupancyGrid, Cell, Cell]:
+    """Return a random grid, of either corner rule, and a query on it that has a path.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+    least, most : int
+        Cells a side.
+    density : float
+        The largest share of occupied cells; it is drawn as well.
+    """
+    while True:
+        occupied = rng.random(rng.integers(least, most + 1, 2)) < rng.uniform(0, density)
+        query = query_on(OccupancyGrid(occupied, corner_cutting=bool(rng.integers(2))), rng)
+        if query is not None:
+            return query
+
+
+def query_on(grid: OccupancyGrid, rng: np.random.Generator, apart: float = 0.0) -> tuple[OccupancyGrid, Cell, Cell] | None:
+    """Return a grid and a random query on it, or None if two cells were drawn that no path joins, or there are none.
+
+    In x or in y they must be at least the share ``apart`` of the larger side away from one another.
+    """
+    free = np.argwhere(~grid.occupied)
+    if len(free) < 2:
+        return None
+    (ya, xa), (yb, xb) = free[rng.choice(len(free), 2, replace=False)].tolist()
+    far = max(abs(xa - xb), abs(ya - yb)) >= apart * max(grid.shape)
+    return (grid, (xa, ya), (xb, yb)) if far and grid.regions[ya, xa] == grid.regions[yb, xb] else None
 
 
 def legal_steps(grid: OccupancyGrid, cell: Cell, headings: Iterable[int] = range(8)) -> Iterator[tuple[int, Cell]]:

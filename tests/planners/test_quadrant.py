@@ -18,8 +18,9 @@ from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sight import visible
 from pymoo_gridpath.study import AlgorithmSpec, ProblemSpec, Study, run_study
 from pymoo_gridpath.testing import PlannerSuite
-from pymoo_gridpath.testing.enumeration import STEPS, legal_steps
-from pymoo_gridpath.testing.reference import is_legal, length, octile_length, turn
+from pymoo_gridpath.testing.branches import enumerate_branches
+from pymoo_gridpath.testing.enumeration import random_query
+from pymoo_gridpath.testing.reference import is_legal, length, turn
 
 
 class TestQuadrantSelection(PlannerSuite):
@@ -30,80 +31,6 @@ class TestQuadrantSelection(PlannerSuite):
 class TestRawAlternatives(PlannerSuite):
     def make(self):
         return QuadrantSelection(alternatives=3, smooth=False)
-
-
-# -- the walk in plain Python -------------------------------------------------------------------------------------------------
-
-
-def sign(value):
-    return (value > 0) - (value < 0)
-
-
-def heading(cell, goal):
-    return STEPS.index((sign(goal[0] - cell[0]), sign(goal[1] - cell[1])))
-
-
-def after(cell, m):
-    return cell[0] + STEPS[m][0], cell[1] + STEPS[m][1]
-
-
-class Walker:
-    """All paths of the walk, each branch walked anew, whatever others have found."""
-
-    def __init__(self, grid, start, goal, strict=False):
-        self.grid, self.goal, self.strict = grid, goal, strict
-        self.legal = {
-            (int(x), int(y)): {m for m, _ in legal_steps(grid, (int(x), int(y)))} for y, x in np.argwhere(~grid.occupied)
-        }
-        self.paths: list[list] = []
-        self.branch([], [start])
-
-    def branch(self, before, stretch):
-        stretch = list(stretch)
-        while stretch[-1] != self.goal and heading(stretch[-1], self.goal) in self.legal[stretch[-1]]:
-            stretch.append(after(stretch[-1], heading(stretch[-1], self.goal)))
-        path, hit = before + without_loops(stretch), stretch[-1]
-        if hit == self.goal:
-            self.paths.append(without_loops(path))
-            return
-        for side in (-1, 1):
-            around = (self.beside if self.strict else self.around)(hit, heading(hit, self.goal), side)
-            if around is not None:
-                self.branch(path[:-1], [hit, *around])
-
-    def beside(self, cell, m, side):
-        return [after(cell, (m + side) % 8)] if (m + side) % 8 in self.legal[cell] else None
-
-    def around(self, hit, m, side):
-        way, cell = [], hit
-        while cell != self.goal:
-            cell = after(cell, heading(cell, self.goal))
-            way.append(cell)
-        far, cell, found = octile_length([hit, self.goal]), hit, []
-        m += side
-        while True:
-            while m % 8 not in self.legal[cell]:
-                m += side
-            cell = after(cell, m % 8)
-            found.append(cell)
-            near = octile_length([cell, self.goal]) < far
-            if near and (cell in way or heading(cell, self.goal) in self.legal[cell]):
-                return found
-            beside = [after(cell, k) for k in self.legal[cell]]
-            onto = [other for other in beside if other in way and octile_length([other, self.goal]) < far]
-            if onto:
-                return [*found, min(onto, key=lambda other: octile_length([other, self.goal]))]
-            m -= side * (1 if self.grid.corner_cutting and m % 2 == 0 else 2)
-            assert len(found) < 8 * self.grid.occupied.size
-
-
-def without_loops(path):
-    last = {cell: k for k, cell in enumerate(path)}
-    kept, k = [], 0
-    while k < len(path):
-        kept.append(path[k])
-        k = last[path[k]] + 1
-    return kept
 
 
 def seconds(cells, resolution=1.0):
@@ -121,12 +48,12 @@ def cells_of(raw):
 
 
 @pytest.mark.parametrize("strict", [False, True])
-def test_alternatives_are_those_of_a_full_enumeration(solvable_query, strict):
+def test_alternatives_are_those_of_a_full_enumeration(strict):
     rng, n_paths, n_none = np.random.default_rng(3), 0, 0
     for _ in range(250):
-        grid, start, goal = solvable_query(rng, 3, 12)
-        paths = Walker(grid, start, goal, strict).paths
-        _, planned, found = plan(grid, start, goal, max_paths=10_000, strict=strict)
+        grid, start, goal = random_query(rng, 3, 12)
+        paths = enumerate_branches(grid, start, goal, strict)
+        _, planned, found = plan(grid, start, goal, max_paths=1000, strict=strict)
         assert found.n_alternatives == len(paths) == len(found.raw)
         assert sorted(map(cells_of, found.raw)) == sorted(paths)
         assert found.seconds == pytest.approx(sorted(map(seconds, paths)))
@@ -136,10 +63,10 @@ def test_alternatives_are_those_of_a_full_enumeration(solvable_query, strict):
     assert n_paths > 200 and (n_none > 20) == strict
 
 
-def test_every_query_that_has_a_path_is_solved_legally(solvable_query):
+def test_every_query_that_has_a_path_is_solved_legally():
     rng = np.random.default_rng(11)
     for _ in range(300):
-        grid, start, goal = solvable_query(rng, 3, 40)
+        grid, start, goal = random_query(rng, 3, 40)
         problem, planned, found = plan(grid, start, goal, alternatives=3)
         assert planned.success and found.n_alternatives >= 1
         moves = Moves(grid)
@@ -155,13 +82,13 @@ def test_every_query_that_has_a_path_is_solved_legally(solvable_query):
         assert (np.diff(found.seconds) >= -1e-9).all() and len(found.raw) == min(found.n_alternatives, 64)
 
 
-def test_the_list_is_the_begin_of_the_whole_one_by_the_time_of_the_walk(solvable_query):
+def test_the_list_is_the_begin_of_the_whole_one_by_the_time_of_the_walk():
     """Where no walk crosses itself; where one does, what is left of a later one may be quicker."""
     rng, compared = np.random.default_rng(7), 0
     while compared < 40:
-        grid, start, goal = solvable_query(rng, 8, 20)
-        whole, part = (plan(grid, start, goal, max_paths=most)[2] for most in (10_000, 4))
-        if 4 < whole.n_alternatives < 10_000:
+        grid, start, goal = random_query(rng, 8, 20)
+        whole, part = (plan(grid, start, goal, max_paths=most)[2] for most in (1000, 4))
+        if 4 < whole.n_alternatives < 1000:
             assert len(part.raw) == 4 and part.n_alternatives == whole.n_alternatives
             assert (part.seconds >= whole.seconds[:4] - 1e-9).all()
             compared += 1
@@ -175,14 +102,17 @@ def test_time_is_of_metres_and_degrees_and_the_first_turn_is_none():
 
 
 def test_what_is_quicker_depends_on_the_size_of_a_cell():
-    occupied = np.zeros((9, 9))
-    occupied[4, 2:6] = occupied[2:5, 5] = 1
-    paths = {}
-    for resolution in (0.001, 1000.0):
-        grid = OccupancyGrid(occupied, resolution=resolution)
-        raw = plan(grid, (1, 0), (8, 8), max_paths=1000)[2].raw
-        paths[resolution] = turn(cells_of(raw[0])), length(cells_of(raw[0]))
-    assert paths[0.001][0] <= paths[1000.0][0] and paths[0.001][1] >= paths[1000.0][1]
+    """Where cells are small, turns count; where they are large, lengths do."""
+    rng, n_other = np.random.default_rng(2), 0
+    for _ in range(200):
+        grid, start, goal = random_query(rng, 6, 16)
+        paths = {tuple(path) for path in enumerate_branches(grid, start, goal)}
+        small, large = (plan(grid.replace(resolution=size), start, goal, max_paths=1000)[2] for size in (1e-6, 1e6))
+        small, large = cells_of(small.raw[0]), cells_of(large.raw[0])
+        assert (turn(small), length(small)) == pytest.approx(min((turn(path), length(path)) for path in paths))
+        assert (length(large), turn(large)) == pytest.approx(min((length(path), turn(path)) for path in paths))
+        n_other += turn(small) < turn(large)
+    assert n_other >= 3
 
 
 def test_an_open_field_is_crossed_by_as_many_tests_as_steps():
@@ -217,6 +147,15 @@ def test_the_letter_of_the_paper_says_when_it_finds_nothing():
     assert minimize(GridPathProblem(grid, (0, 2), (0, 0)), QuadrantSelection()).success
 
 
+def test_the_number_of_alternatives_has_no_bound():
+    """Each wall across the way is passed on either side, and doubles them."""
+    occupied = np.zeros((7, 603), dtype=bool)
+    occupied[2:5, 1::2] = True
+    _, planned, found = plan(OccupancyGrid(occupied), (0, 3), (602, 3), max_paths=4)
+    assert found.n_alternatives == 2**301 and len(found.raw) == 4
+    assert planned.message == "found about 10^90 paths, which branch in 301 places"
+
+
 def test_codings_that_cannot_turn_back_are_refused():
     problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "integer")
     said = "QuadrantSelection plans paths that may turn back, which the integer representation cannot code"
@@ -247,7 +186,7 @@ def test_paths_without_room_or_over_the_limit_are_left_out_and_said():
         ({"speed": 0.0}, "speed is 0.0, expected a positive number of metres per second"),
         ({"turn_seconds": -1}, "turn_seconds is -1, expected a number of seconds, zero or more"),
         ({"alternatives": 65}, "alternatives is 65, expected a whole number from 1 to max_paths, 64"),
-        ({"max_paths": 10**9}, "max_paths is 1000000000, expected"),
+        ({"max_paths": 10**9}, "max_paths is 1000000000, expected a whole number of at least 1 and at most 1,000"),
         ({"smooth": 1}, "smooth is 1, expected True or False"),
         ({"strict": "no"}, "strict is 'no', expected True or False"),
         ({"sped": 1}, "QuadrantSelection takes no argument 'sped'; did you mean 'speed'"),
