@@ -6,6 +6,7 @@ import functools
 import itertools
 import pickle
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -153,7 +154,7 @@ def slow_scores(objective: Objective, grid: OccupancyGrid, paths: Sequence[tuple
     """Return what legal paths cost by what an objective says, one cell and one step after another."""
     field, moves = objective.field(grid), objective.moves(grid)
     costs = None if field is None else np.asarray(field, dtype=float).tolist()
-    steps = (0.0, 0.0) if moves is None else np.asarray(moves, dtype=float).tolist()
+    steps: Any = (0.0, 0.0) if moves is None else np.asarray(moves, dtype=float).tolist()
     by_cell = np.ndim(steps[0]) > 0
 
     def score(cells) -> float:
