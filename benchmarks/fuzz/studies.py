@@ -31,8 +31,7 @@ from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.study.planning.canonical import n_cells
 from pymoo_gridpath.study.planning.estimate import estimate
 from pymoo_gridpath.study.planning.expand import plan_study
-from pymoo_gridpath.study.report import write_report
-from pymoo_gridpath.study.report.page import drawing
+from pymoo_gridpath.study.report import write_report, writing
 from pymoo_gridpath.study.report.page.blocks import Drawing
 from pymoo_gridpath.study.running import store
 from pymoo_gridpath.study.running.runner import run_study
@@ -57,7 +56,7 @@ def report(folder: Path, random: Random) -> None:
         write_report(folder, formats=["svg"])
     else:
         with patch.object(
-            drawing, "draw_all", lambda blocks, forms: [item for item in blocks if not isinstance(item, Drawing)]
+            writing, "draw_all", lambda blocks, forms: [item for item in blocks if not isinstance(item, Drawing)]
         ):
             write_report(folder, formats=["svg"])
 
