@@ -40,6 +40,8 @@ def _grids(w: World) -> dict[str, Call]:
         "OccupancyGrid.contains": (grid.contains, {"cell": cell}),
         "OccupancyGrid.crop": (grid.crop, {"box": grid.whole}),
         "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
+        "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
+        "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
         "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),
         "OccupancyGrid.move_graph": (grid.move_graph, {}),
         "OccupancyGrid.nearest_free": (grid.nearest_free, {"cell": cell}),
@@ -250,6 +252,13 @@ def _planners(w: World) -> dict[str, Call]:
             "max_paths": 9,
             "strict": True,
         },
+        algorithms.RegionOfSight: {
+            "radius": 1.0,
+            "road": "shortest",
+            "search": "shortest",
+            "sweep": False,
+            "max_passes": 9,
+        },
         algorithms.AStar: {"heuristic": "euclidean"},
         algorithms.Dijkstra: {},
         algorithms.BreadthFirst: {},
@@ -260,7 +269,7 @@ def _planners(w: World) -> dict[str, Call]:
     found: dict[str, Call] = {}
     for cls, given in arguments.items():
         found[cls.__name__] = (cls, given)
-        found[f"{cls.__name__}.plan"] = (cls().plan, {"problem": problem})
+        found[f"{cls.__name__}.plan"] = (cls(**given).plan, {"problem": problem})
         found[f"{cls.__name__}.parameters"] = (cls.parameters, {})
         found[f"{cls.__name__}.refuse"] = (cls.refuse, {"problem": problem})
     return found
