@@ -100,6 +100,10 @@ def _problems(w: World) -> dict[str, Call]:
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),
         "GridPathProblem.score": (problem.score, {"paths": paths}),
         "random_dense_grid": (problems.random_dense_grid, {"size": 8, "p0": 0.3, "random_state": 1}),
+        "convex_environment": (problems.convex_environment, {"random_state": 1}),
+        "concave_environment": (problems.concave_environment, {"random_state": 1}),
+        "maze_environment": (problems.maze_environment, {"random_state": 1}),
+        "far_corners": (problems.far_corners, {"grid": w.grid}),
         "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
         "Length": (objectives.Length, {}),
         **{

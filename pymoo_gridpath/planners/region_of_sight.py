@@ -22,12 +22,15 @@ from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search.counted import best_first
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.road import way_to, with_legal_steps
-from pymoo_gridpath.search.sight import Waypoints, shorten
+from pymoo_gridpath.search.sight import Waypoints, path_length, shorten
 
 _ROADS, _SEARCHES = ("skeleton", "shortest"), ("best", "shortest")
 
 # The paper's distance to obstacles, as a share of the shorter side of the map.
 _SHARE = 0.01
+
+# Lengths that differ by less, in cells, are equal.
+_ROUNDING = 1e-9
 
 # No obstacle grows by so few cells or less.
 _NO_GROWTH = 0.5
@@ -64,7 +67,7 @@ class SightPaths:
 
     @property
     def passes(self) -> np.ndarray:
-        """Number of passes of each path, int, shape (n,); the last two gain nothing unless ``max_passes`` ends them."""
+        """Number of passes of each path, int, shape (n,), those at the end that gained next to nothing included."""
         return np.array([len(lengths) - 1 for lengths in self.lengths], dtype=int)
 
     @functools.cached_property
@@ -77,6 +80,25 @@ class SightPaths:
     def curvature(self) -> np.ndarray:
         """Greatest and mean curvature of each path, 1 / m, shape (n, 2); see `Waypoints`."""
         return np.array([waypoints.curvature for waypoints in self.waypoints]).reshape(-1, 2)
+
+
+class _Query:
+    """A query, and the length of its shortest path, which few radii ask for.
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+    """
+
+    def __init__(self, problem):
+        self.moves: Moves = representation_of(problem).moves
+        self.grid: OccupancyGrid = problem.grid
+        self.start, self.goal = self.moves.index(problem.start), self.moves.index(problem.goal)
+
+    @functools.cached_property
+    def shortest(self) -> float:
+        """Length of the shortest path in cells."""
+        return path_length(self.moves, best_first(self.moves, self.start, self.goal, "octile").path)
 
 
 class _Sighted(NamedTuple):
@@ -94,10 +116,10 @@ class _Sighted(NamedTuple):
 class RegionOfSight(Planner):
     """Grow the obstacles, find a path on a road between them, and shorten it by jumping to the last of its cells in sight.
 
-    A path so keeps a distance to the obstacles, and is shortened forward and backward in turn until neither pass gains. Start
-    and goal that lie closer to an obstacle leave by the shortest way. Where no path is left between the grown obstacles they
-    grow by one cell less, and so on, at last not at all, so that every query that has a path is solved. The objectives of the
-    problem are not looked at.
+    A path so keeps a distance to the obstacles, and is shortened forward and backward in turn until neither pass gains a tenth
+    of a cell. Start and goal that lie closer to an obstacle leave by the shortest way. Where no path is left between the grown
+    obstacles, or both ways out together are as long as a path from start to goal, they grow by one cell less, and so on, at
+    last not at all, so that every query that has a path is solved. The objectives of the problem are not looked at.
 
     Parameters
     ----------
@@ -182,14 +204,14 @@ class RegionOfSight(Planner):
             _skeletonize()
 
     def plan(self, problem) -> Plan:
-        moves, grid = representation_of(problem).moves, problem.grid
-        ends = moves.index(problem.start), moves.index(problem.goal)
+        query = _Query(problem)
+        moves, grid = query.moves, query.grid
         if self.sweep:
             # Without an obstacle nothing grows, and the radius makes no difference.
             radii = map(float, itertools.count() if grid.n_occupied else range(1))
-            every = itertools.takewhile(lambda one: one is not None, (self._at(radius, moves, grid, *ends) for radius in radii))
+            every = itertools.takewhile(lambda one: one is not None, (self._at(radius, query) for radius in radii))
         else:
-            every = (self._at(radius, moves, grid, *ends) for radius in self._radii(grid))
+            every = (self._at(radius, query) for radius in self._radii(grid))
             every = itertools.islice((one for one in every if one is not None), 1)
         paths: dict[bytes, _Sighted] = {}
         for one in every:
@@ -222,11 +244,15 @@ class RegionOfSight(Planner):
             cells = cells - 1 if cells - 1 > _NO_GROWTH else 0.0
             yield cells
 
-    def _at(self, radius: float, moves: Moves, grid: OccupancyGrid, start: int, goal: int) -> _Sighted | None:
+    def _at(self, radius: float, query: _Query) -> _Sighted | None:
         """Return a path between obstacles that are grown by so many cells, or None if there is none."""
-        usable = ~grid.grow(radius).occupied[moves.box.slices].ravel()
+        moves, start, goal = query.moves, query.start, query.goal
+        usable = ~query.grid.grow(radius).occupied[moves.box.slices].ravel()
         ways = [way_to(moves, end, usable) for end in (start, goal)]
         if not all(map(len, ways)):
+            return None
+        out = sum(path_length(moves, way) for way in ways)
+        if out > 0 and out >= query.shortest - _ROUNDING:
             return None
         usable[np.concatenate(ways)] = True
         inside = moves.within(usable)

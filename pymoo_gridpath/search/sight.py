@@ -19,8 +19,11 @@ from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sequences import cut_loops
 
-# Passes that gain less, in cells, gain nothing: it is rounding.
-_LEAST_GAIN = 1e-9
+# A gain below this, in cells, is rounding of numbers.
+_ROUNDING = 1e-9
+
+# A pass that shortens a path by less, in cells, is no reason for another: centres of cells stand for points half a cell around.
+_LEAST_GAIN = 0.1
 
 
 class Waypoints(NamedTuple):
@@ -71,6 +74,11 @@ class Waypoints(NamedTuple):
 
 def _length(points: np.ndarray) -> float:
     return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def path_length(moves: Moves, path: np.ndarray) -> float:
+    """Return the Euclidean length, in cells, of the line from each cell to the next, given by their indices."""
+    return _length(moves.cells(path))
 
 
 def visible(moves: Moves, cells: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -125,7 +133,7 @@ def smoothed(moves: Moves, path: np.ndarray, backward: bool = False) -> tuple[np
 
 
 def shorten(moves: Moves, path: np.ndarray, max_passes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Shorten a path by line of sight, forward and backward in turn, until neither gains.
+    """Shorten a path by line of sight, forward and backward in turn, until neither gains a tenth of a cell.
 
     Each pass starts from all cells of the path before. It counts only if it is shorter, or as long with fewer waypoints:
     rounding to cells moves points, so that without this rule passes may run in circles.
@@ -142,26 +150,23 @@ def shorten(moves: Moves, path: np.ndarray, max_passes: int) -> tuple[np.ndarray
         Each sees the next.
     cells : numpy.ndarray of int64, shape (k,)
     lengths : numpy.ndarray of float, shape (passes + 1,)
-        Euclidean length in cells before the first pass, and after each; at the end two passes without gain, unless
-        ``max_passes`` came first.
+        Euclidean length in cells before the first pass, and after each.
 
     References
     ----------
     Hliwa and Atieh, algorithm 1.
     """
     waypoints, cells = path, path
-    lengths = [_length(moves.cells(path))]
+    lengths = [path_length(moves, path)]
     idle = 0
     while idle < 2 and len(lengths) <= max_passes:
         tried = smoothed(moves, cells, backward=len(lengths) % 2 == 0)
-        length = _length(moves.cells(tried[0]))
-        idle += 1
-        if length < lengths[-1] - _LEAST_GAIN:
-            idle = 0
+        gain = lengths[-1] - path_length(moves, tried[0])
         # The first pass of a straight path gains nothing but fewer waypoints.
-        if idle == 0 or (length < lengths[-1] + _LEAST_GAIN and len(tried[0]) < len(waypoints)):
+        if gain > _ROUNDING or (gain > -_ROUNDING and len(tried[0]) < len(waypoints)):
             waypoints, cells = tried
-        lengths.append(_length(moves.cells(waypoints)))
+        idle = 0 if gain >= _LEAST_GAIN else idle + 1
+        lengths.append(path_length(moves, waypoints))
     return waypoints, cells, np.array(lengths)
 
 

@@ -107,6 +107,19 @@ def test_ways_out_are_shortest_and_the_only_cells_too_near():
     assert {(10, 11), (10, 8)} <= set(near) and {x for x, _ in near} <= set(range(7, 14))
 
 
+def test_ways_out_as_long_as_a_path_are_none():
+    occupied = np.ones((9, 30))
+    occupied[4, :24] = 0
+    occupied[1:8, 23:30] = 0
+    grid = OccupancyGrid(occupied)
+    # Along the corridor, away from the only room where two cells can be kept: both would go there and one come back.
+    _, planned, found = plan(grid, (2, 4), (9, 4), radius=2)
+    assert found.radius.tolist() == [0.0] and planned.message.startswith("found a path at a radius of 0 cells, for 2 cells")
+    assert tuples(found.cells[0]) == [(x, 4) for x in range(2, 10)]
+    # Into the room there is but one way out.
+    assert plan(grid, (2, 4), (26, 4), radius=2)[2].radius.tolist() == [2.0]
+
+
 @pytest.mark.parametrize("search", ["best", "shortest"])
 def test_passes_never_lengthen_and_end_where_neither_gains(solvable_query, search):
     rng = np.random.default_rng(2)
@@ -115,8 +128,9 @@ def test_passes_never_lengthen_and_end_where_neither_gains(solvable_query, searc
         _, _, found = plan(grid, start, goal, search=search)
         (lengths,) = found.lengths
         assert (np.diff(lengths) <= 1e-9).all() and len(lengths) == found.passes[0] + 1 >= 3
-        assert lengths[-1] == pytest.approx(lengths[-3]) and lengths[-1] >= math.dist(start, goal) - 1e-9
-        gains = np.diff(lengths) < -1e-9
+        assert lengths[-1] >= math.dist(start, goal) - 1e-9
+        gains = np.diff(lengths) <= -0.1
+        assert not gains[-2:].any()
         # No two in a row before the last two are idle.
         assert not (~gains[:-2] & ~gains[1:-1]).any()
 
