@@ -24,7 +24,6 @@ from pymoo_gridpath.compiled import COMPILED
 from pymoo_gridpath.maps import load_map, load_shipped, shipped_maps
 from pymoo_gridpath.neighbourhood import DIAGONAL as IS_DIAGONAL
 from pymoo_gridpath.problems import concave_environment, convex_environment, far_corners, maze_environment
-from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.search.counted import DIAGONAL, STRAIGHT
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.shortest import backward_costs
@@ -34,7 +33,7 @@ Cell = tuple[int, int]
 Query = tuple[OccupancyGrid, Cell, Cell]
 
 # Length, distance to obstacles, curvature in 1 / m and passes, tables I to III.
-_PRINTED = {
+_PRINTED: dict[Callable[[int], OccupancyGrid], str] = {
     convex_environment: "677.49, 5, 0.005, 7",
     concave_environment: "623.74, 4, 0.1123, 4",
     maze_environment: "356.77, 3, 0.1806, 7",
@@ -43,8 +42,7 @@ _PRINTED = {
 
 def plan(query: Query, **arguments):
     """Return what is found, and the problem."""
-    grid, start, goal = query
-    problem = GridPathProblem(grid, start, goal, CellSequence(grid, start, goal, max_cells=grid.occupied.size))
+    problem = GridPathProblem(*query, representation="cells")
     planner = RegionOfSight(**arguments)
     return planner.plan(problem), planner.found, problem
 
@@ -67,7 +65,7 @@ def claims(make: Callable[[int], OccupancyGrid], n: int) -> np.ndarray:
         query = grid, *far_corners(grid)
         planned, found, problem = plan(query)
         _, from_shortest, _ = plan(query, road="shortest")
-        lowered, fallback = lowered + ("there is none" in planned.message), fallback + int(found.fallback[0])
+        lowered, fallback = lowered + ("none at" in planned.message), fallback + int(found.fallback[0])
         rows.append(
             (
                 found.passes[0],
@@ -109,7 +107,7 @@ def promises(grid: OccupancyGrid, n: int, rng: np.random.Generator) -> None:
             planned, found, problem = plan(query, road=road)
             cells = cells_of(planned, problem)
             solved, legal = solved + planned.success, legal + is_legal(cells, *query)
-            lowered, fallback = lowered + ("there is none" in planned.message), fallback + int(found.fallback[0])
+            lowered, fallback = lowered + ("none at" in planned.message), fallback + int(found.fallback[0])
             passes.append(found.passes[0])
             ratios.append(length(cells) / grid.shortest_length(*query[1:]))
         print(

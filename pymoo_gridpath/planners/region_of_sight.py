@@ -18,7 +18,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.planners.base import Plan, Planner, settled
 from pymoo_gridpath.registry import register
-from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.representations.base import Representation, representation_of
 from pymoo_gridpath.search.counted import best_first
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.road import way_to, with_legal_steps
@@ -54,7 +54,8 @@ class SightPaths:
     lengths : list of numpy.ndarray
         Euclidean length in cells before the first pass, and after each.
     fallback : numpy.ndarray of bool, shape (n,)
-        Whether the road did not join start and goal, so that all free cells were searched.
+        Whether each path began as a shortest one, since the road did not join start and goal or the path by it had no room in a
+        row of genes.
     """
 
     grid: OccupancyGrid
@@ -83,7 +84,7 @@ class SightPaths:
 
 
 class _Query:
-    """A query, and the length of its shortest path, which few radii ask for.
+    """A query, with the distance between its ends, and the length of its shortest path, which few radii ask for.
 
     Parameters
     ----------
@@ -91,14 +92,20 @@ class _Query:
     """
 
     def __init__(self, problem):
-        self.moves: Moves = representation_of(problem).moves
+        self.representation: Representation = representation_of(problem)
+        self.moves: Moves = self.representation.moves
         self.grid: OccupancyGrid = problem.grid
         self.start, self.goal = self.moves.index(problem.start), self.moves.index(problem.goal)
+        self.apart = math.dist(problem.start, problem.goal)
 
     @functools.cached_property
     def shortest(self) -> float:
         """Length of the shortest path in cells."""
         return path_length(self.moves, best_first(self.moves, self.start, self.goal, "octile").path)
+
+    def fits(self, cells: np.ndarray) -> bool:
+        """Return whether a row of genes has room for a path."""
+        return bool(self.representation.fits(Sequences(cells, np.array([0, len(cells)])))[0])
 
 
 class _Sighted(NamedTuple):
@@ -118,8 +125,9 @@ class RegionOfSight(Planner):
 
     A path so keeps a distance to the obstacles, and is shortened forward and backward in turn until neither pass gains a tenth
     of a cell. Start and goal that lie closer to an obstacle leave by the shortest way. Where no path is left between the grown
-    obstacles, or both ways out together are as long as a path from start to goal, they grow by one cell less, and so on, at
-    last not at all, so that every query that has a path is solved. The objectives of the problem are not looked at.
+    obstacles, none that has room in a row of genes, or both ways out together are as long as a path from start to goal, they
+    grow by one cell less, and so on, at last not at all, so that every query that has a path is solved. The objectives of the
+    problem are not looked at.
 
     Parameters
     ----------
@@ -252,38 +260,40 @@ class RegionOfSight(Planner):
         if not all(map(len, ways)):
             return None
         out = sum(path_length(moves, way) for way in ways)
-        if out > 0 and out >= query.shortest - _ROUNDING:
+        # No path is shorter than the straight line, which costs no search.
+        if out >= query.apart and out >= query.shortest - _ROUNDING:
             return None
         usable[np.concatenate(ways)] = True
         inside = moves.within(usable)
-        initial = self._search(inside, start, goal)
-        if not len(initial):
+        shortest = best_first(inside, start, goal, "octile").path
+        if not len(shortest):
             return None
-        fallback = False
         if self.road == "skeleton":
             on_road = self._search(_road(inside, usable, start, goal), start, goal)
-            fallback = not len(on_road)
-            initial = initial if fallback else on_road
-        return _Sighted(radius, initial, *shorten(inside, initial, self.max_passes), fallback)
+            if len(on_road):
+                sighted = _Sighted(radius, on_road, *shorten(inside, on_road, self.max_passes), False)
+                if query.fits(sighted.cells):
+                    return sighted
+        sighted = _Sighted(radius, shortest, *shorten(inside, shortest, self.max_passes), self.road == "skeleton")
+        # Of the last of all radii it is returned even so: the message then says that it has no room.
+        return sighted if radius == 0 or query.fits(sighted.cells) else None
 
-    def _search(self, moves: Moves, start: int, goal: int) -> np.ndarray:
-        """Return a path; of no cells if there is none."""
-        if self.road == "skeleton" and self.search == "best":
-            return best_first(moves, start, goal, "euclidean", greedy=True).path
-        return best_first(moves, start, goal, "octile").path
+    def _search(self, road: Moves, start: int, goal: int) -> np.ndarray:
+        """Return a path on a road; of no cells if there is none."""
+        if self.search == "best":
+            return best_first(road, start, goal, "euclidean", greedy=True).path
+        return best_first(road, start, goal, "octile").path
 
     def _message(self, grid: OccupancyGrid) -> str:
         found, most = self.found, int(self.found.passes.max())
-        fallback = np.count_nonzero(found.fallback)
         if self.sweep:
             message = f"found {counted(len(found.radius), 'path')} at radii up to {_in_cells(found.radius[-1])}"
-            joined = f"; the road did not join start and goal for {fallback} of them"
         else:
             wanted, held = self._wanted(grid), found.radius[0]
-            less = f", for {_in_cells(wanted)} there is none," if held < wanted else ""
-            message = f"found a path at a radius of {_in_cells(held)}{less} in {most} pass{'es' * (most > 1)}"
-            joined = "; the road did not join start and goal"
-        return message + joined * bool(fallback)
+            message = f"found a path at a radius of {_in_cells(held)} in {most} pass{'es' * (most > 1)}"
+            message += f"; none at {_in_cells(wanted)}" * bool(held < wanted)
+        fallback = np.count_nonzero(found.fallback)
+        return message + f"; {fallback} of {counted(len(found.radius), 'path')} not by the road" * bool(fallback)
 
 
 def _in_cells(radius: float) -> str:

@@ -114,7 +114,9 @@ def test_ways_out_as_long_as_a_path_are_none():
     grid = OccupancyGrid(occupied)
     # Along the corridor, away from the only room where two cells can be kept: both would go there and one come back.
     _, planned, found = plan(grid, (2, 4), (9, 4), radius=2)
-    assert found.radius.tolist() == [0.0] and planned.message.startswith("found a path at a radius of 0 cells, for 2 cells")
+    assert (
+        found.radius.tolist() == [0.0] and planned.message == "found a path at a radius of 0 cells in 2 passes; none at 2 cells"
+    )
     assert tuples(found.cells[0]) == [(x, 4) for x in range(2, 10)]
     # Into the room there is but one way out.
     assert plan(grid, (2, 4), (26, 4), radius=2)[2].radius.tolist() == [2.0]
@@ -171,7 +173,7 @@ def test_a_road_that_does_not_join_is_left_and_said(monkeypatch):
     monkeypatch.setattr(region_of_sight, "_skeletonize", lambda: np.zeros_like)
     _, planned, found = plan(load_map("office"), (3, 4), (56, 35))
     assert found.fallback.tolist() == [True] and planned.success
-    assert planned.message.endswith("; the road did not join start and goal")
+    assert planned.message.endswith("; 1 of 1 path not by the road")
 
 
 def test_a_radius_without_a_path_is_lowered_and_said():
@@ -181,7 +183,7 @@ def test_a_radius_without_a_path_is_lowered_and_said():
     grid = OccupancyGrid(occupied, resolution=0.5)
     _, planned, found = plan(grid, (2, 7), (12, 7), radius=1.25)
     assert found.radius.tolist() == [0.0]
-    assert planned.message == "found a path at a radius of 0 cells, for 2.5 cells there is none, in 2 passes"
+    assert planned.message == "found a path at a radius of 0 cells in 2 passes; none at 2.5 cells"
     occupied[5:10, 7] = 0
     # Half a cell from the middle of the gap lies its edge: two more are two and a half cells.
     assert plan(grid.replace(occupied=occupied), (2, 7), (12, 7), radius=1.25)[2].radius.tolist() == [2.5]
@@ -218,11 +220,16 @@ def test_codings_that_cannot_turn_back_are_refused():
         make_algorithm("ros", problem)
 
 
-def test_paths_without_room_are_left_out_and_said():
-    grid = load_map("warehouse")
-    problem = GridPathProblem(grid, (2, 3), (57, 36), CellSequence(grid, (2, 3), (57, 36), max_cells=70))
-    result = minimize(problem, RegionOfSight(sweep=True))
-    assert len(result.pop) < 3 and "left out, the longest visits" in result.message
+def test_paths_without_room_give_way_to_shorter_ones():
+    grid, ends = load_map("warehouse"), ((2, 3), (57, 36))
+    long, short = plan(grid, *ends, radius=0)[2], plan(grid, *ends, radius=0, road="shortest")[2]
+    n = len(short.cells[0])
+    assert len(plan(grid, *ends)[2].cells[0]) > n
+    problem = GridPathProblem(grid, *ends, CellSequence(grid, *ends, max_cells=n))
+    result = minimize(problem, RegionOfSight())
+    assert result.success and result.algorithm.found.radius.tolist() == [0.0] and len(result.algorithm.found.cells[0]) <= n
+    assert "; none at 1 cell" in result.message
+    assert result.algorithm.found.fallback.tolist() == [len(long.cells[0]) > n]
 
 
 @pytest.mark.parametrize(
