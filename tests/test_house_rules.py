@@ -184,8 +184,8 @@ RULES = {
     penalties: {"problems.grid_path", "algorithms.paper"},
     # What each derives from, by which it is registered; and what a file says of a run, by where pymoo's algorithms hold it.
     operator_sets: {"operators.sets", "registry", "decision.provenance"},
-    # Of the planner, and of the operators. Luminance is rounded by half of 1000.
-    numbers_of_the_paper: {"algorithms.paper", "operators.parameters", "maps.image"},
+    # Of the planner, and of the operators. Luminance is rounded by half of 1000, and a map has 500 cells a side.
+    numbers_of_the_paper: {"algorithms.paper", "operators.parameters", "maps.image", "problems.scenarios"},
     # Names of paths are written beside their ends, at angles.
     headings: {"neighbourhood", "plotting.labels"},
     # And whether a path of cells has to be mended, which is no question of limits.
@@ -273,7 +273,8 @@ def test_no_place_but_its_own_knows_a_planner():
         # Lists of public names say which there are.
         known -= {place for place in known if MODULES[place].name == "__init__.py"}
         # A report calls a front so, whoever found it: the whole truth, or the best of all runs.
-        assert known - {home, "study.report.results"} == set()
+        # And a map format goes by the same three letters as a planner.
+        assert known - {home, "study.report.results", "maps.ros"} == set()
         assert home in known
 
 

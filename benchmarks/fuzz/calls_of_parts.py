@@ -40,6 +40,8 @@ def _grids(w: World) -> dict[str, Call]:
         "OccupancyGrid.contains": (grid.contains, {"cell": cell}),
         "OccupancyGrid.crop": (grid.crop, {"box": grid.whole}),
         "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
+        "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
+        "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
         "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),
         "OccupancyGrid.move_graph": (grid.move_graph, {}),
         "OccupancyGrid.nearest_free": (grid.nearest_free, {"cell": cell}),
@@ -98,6 +100,10 @@ def _problems(w: World) -> dict[str, Call]:
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),
         "GridPathProblem.score": (problem.score, {"paths": paths}),
         "random_dense_grid": (problems.random_dense_grid, {"size": 8, "p0": 0.3, "random_state": 1}),
+        "convex_environment": (problems.convex_environment, {"random_state": 1}),
+        "concave_environment": (problems.concave_environment, {"random_state": 1}),
+        "maze_environment": (problems.maze_environment, {"random_state": 1}),
+        "far_corners": (problems.far_corners, {"grid": w.grid}),
         "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
         "Length": (objectives.Length, {}),
         **{
@@ -250,6 +256,13 @@ def _planners(w: World) -> dict[str, Call]:
             "max_paths": 9,
             "strict": True,
         },
+        algorithms.RegionOfSight: {
+            "radius": 1.0,
+            "road": "shortest",
+            "search": "shortest",
+            "sweep": False,
+            "max_passes": 9,
+        },
         algorithms.AStar: {"heuristic": "euclidean"},
         algorithms.Dijkstra: {},
         algorithms.BreadthFirst: {},
@@ -260,7 +273,7 @@ def _planners(w: World) -> dict[str, Call]:
     found: dict[str, Call] = {}
     for cls, given in arguments.items():
         found[cls.__name__] = (cls, given)
-        found[f"{cls.__name__}.plan"] = (cls().plan, {"problem": problem})
+        found[f"{cls.__name__}.plan"] = (cls(**given).plan, {"problem": problem})
         found[f"{cls.__name__}.parameters"] = (cls.parameters, {})
         found[f"{cls.__name__}.refuse"] = (cls.refuse, {"problem": problem})
     return found

@@ -30,6 +30,7 @@ BUILDING_BLOCKS = (
     "Registry",
     "SequencePaths",
     "Sequences",
+    "SightPaths",
     "Waypoints",
     "check_box",
     "check_grid",

@@ -22,6 +22,8 @@ from pymoo_gridpath.planners import (
     PathOutput,
     QuadrantPaths,
     QuadrantSelection,
+    RegionOfSight,
+    SightPaths,
 )
 from pymoo_gridpath.registry import ALGORITHMS
 from pymoo_gridpath.search.sight import Waypoints
@@ -42,7 +44,9 @@ __all__ = [
     "PathOutput",
     "QuadrantPaths",
     "QuadrantSelection",
+    "RegionOfSight",
     "Setup",
+    "SightPaths",
     "SmoothMOEAD",
     "StrengthAndSmoothness",
     "StrengthTournament",

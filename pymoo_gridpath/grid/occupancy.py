@@ -334,19 +334,38 @@ class OccupancyGrid(Cells):
         GridPathWarning
             If the radius is not zero but too small to have an effect: at most half a cell.
         """
-        radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
-        cells = radius / self._resolution
+        grown = self.grow(self.radius_in_cells(radius))
+        if grown is self and radius > 0:
+            warnings.warn(
+                f"the robot radius of {radius:g} m is at most half a cell of {self._name!r}, {self._resolution:g} m "
+                "wide, so that no obstacle grows",
+                GridPathWarning,
+                stacklevel=2,
+            )
+        return grown
+
+    def grow(self, cells: float) -> OccupancyGrid:
+        """Return what `inflate` does for a radius that is given in cells, without a warning; half a cell or less grows nothing.
+
+        Raises
+        ------
+        GridError
+            If the number is negative or not finite.
+        """
+        cells = checks.number("growth", cells, 0.0, expected="a number of cells, zero or more", error=GridError)
         disc = disc_of(cells, max(self.shape))
-        if disc.sum() <= 1:
-            if radius > 0:
-                warnings.warn(
-                    f"the robot radius of {radius:g} m is at most half a cell of {self._name!r}, {self._resolution:g} m "
-                    "wide, so that no obstacle grows",
-                    GridPathWarning,
-                    stacklevel=2,
-                )
-            return self
-        return self.replace(occupied=grown_by(self._occupied, disc, self._free_box))
+        return self if disc.sum() <= 1 else self.replace(occupied=grown_by(self._occupied, disc, self._free_box))
+
+    def radius_in_cells(self, radius: float) -> float:
+        """Return the radius of a robot, given in metres, in cells.
+
+        Raises
+        ------
+        GridError
+            If the radius is negative or not finite.
+        """
+        radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
+        return radius / self._resolution
 
     def shortest_lengths(self, start: Sequence[int], limit: float = math.inf) -> np.ndarray:
         """Return the length in cells of the shortest path from ``start`` to every cell.

@@ -16,6 +16,7 @@ from pymoo_gridpath.planners.counted import (
 from pymoo_gridpath.planners.display import PathOutput
 from pymoo_gridpath.planners.exact import ExactFront
 from pymoo_gridpath.planners.quadrant import QuadrantPaths, QuadrantSelection
+from pymoo_gridpath.planners.region_of_sight import RegionOfSight, SightPaths
 
 __all__ = [
     "PLANNERS",
@@ -33,6 +34,8 @@ __all__ = [
     "Planner",
     "QuadrantPaths",
     "QuadrantSelection",
+    "RegionOfSight",
+    "SightPaths",
     "reference_planner",
     "settled",
 ]

@@ -17,8 +17,7 @@ from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search.alternatives import GOAL, NOWHERE, cost_of, measure, quickest, unfold
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.quadrant import Branches, branches, octile
-from pymoo_gridpath.search.sequences import cut_loops
-from pymoo_gridpath.search.sight import Waypoints, along, farthest_seen
+from pymoo_gridpath.search.sight import Waypoints, smoothed
 
 # Larger numbers of paths say no more than their size.
 _MOST_WRITTEN = 10**12
@@ -187,7 +186,7 @@ class QuadrantSelection(Planner):
         """Return waypoints and cells of the paths to return."""
         chosen: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
         for path in raw:
-            waypoints, cells = _smoothed(path, moves) if self.smooth else (path, path)
+            waypoints, cells = smoothed(moves, path) if self.smooth else (path, path)
             chosen.setdefault(cells.tobytes(), (waypoints, cells))
             if len(chosen) == self.alternatives:
                 break
@@ -208,17 +207,6 @@ def _split(moves: Moves, paths: list[np.ndarray]) -> list[np.ndarray]:
     if not paths:
         return []
     return np.split(moves.cells(np.concatenate(paths)), np.cumsum([len(path) for path in paths])[:-1])
-
-
-def _smoothed(path: np.ndarray, moves: Moves) -> tuple[np.ndarray, np.ndarray]:
-    """Return the waypoints of a path, and the cells of the lines between them."""
-    while True:
-        waypoints = farthest_seen(moves.legal, moves.offsets, moves.width, path)
-        cells = along(moves.width, waypoints)
-        path = cut_loops(Sequences(cells, np.array([0, len(cells)])), moves.n_cells).cells
-        # Lines may cross one another; what is left then is smoothed anew.
-        if len(path) == len(cells):
-            return waypoints, cells
 
 
 def _counted_paths(n: int) -> str:

@@ -140,7 +140,7 @@ def _best_first(legal, offsets, width, start, goal, rule, greedy):
                 push(heap, n, total + left, left, other)
             n += 1
     counts[3] = counts[0]
-    return _back(offsets, came, start, goal, state[goal] == 2), counts
+    return back(offsets, came, start, goal, state[goal] == 2), counts
 
 
 @kernel
@@ -161,12 +161,12 @@ def _breadth_first(legal, offsets, start, goal):
                 came[other] = m
                 queue[opened] = other
                 opened += 1
-    path = _back(offsets, came, start, goal, came[goal] >= 0)
+    path = back(offsets, came, start, goal, came[goal] >= 0)
     return path, np.array([opened, closed, 0, opened])
 
 
 @kernel
-def _back(offsets, came, start, goal, reached):
+def back(offsets, came, start, goal, reached):
     """Return the cells from the start to the goal, by the headings along which each was come to."""
     n = 0
     cell = goal

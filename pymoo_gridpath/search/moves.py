@@ -94,9 +94,9 @@ class Moves:
         kept = copy.copy(self)
         kept.legal = np.zeros_like(self.legal)
         for m in range(8):
-            leads = np.flatnonzero((self.legal >> np.uint8(m) & 1).astype(bool) & usable)
-            leads = leads[usable[leads + self.offsets[m]]]
-            kept.legal[leads] |= np.uint8(1 << m)
+            # What a roll brings round from the other end is beyond the edge, where no step leads.
+            kept.legal |= self.legal & (np.roll(usable, -self.offsets[m]) * np.uint8(1 << m))
+        kept.legal *= usable
         return kept
 
     def without(self, steps: np.ndarray) -> Moves:

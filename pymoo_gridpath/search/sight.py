@@ -15,7 +15,15 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.neighbourhood import HEADING_OF
+from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.sequences import cut_loops
+
+# A gain below this, in cells, is rounding of numbers.
+_ROUNDING = 1e-9
+
+# A pass that shortens a path by less, in cells, is no reason for another: centres of cells stand for points half a cell around.
+_LEAST_GAIN = 0.1
 
 
 class Waypoints(NamedTuple):
@@ -47,9 +55,30 @@ class Waypoints(NamedTuple):
         """Euclidean length in metres."""
         return _length(self.metres)
 
+    @property
+    def curvature(self) -> tuple[float, float]:
+        """Greatest and mean curvature, 1 / m.
+
+        A polyline has none of its own: it is 0 along a piece and infinite at a corner. So the line is cut into pieces of one
+        cell, as near as their number allows, and the curvature is Menger's, that of the circle through three of their ends.
+        """
+        along_it = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.metres, axis=0).T))])
+        at = np.linspace(0.0, along_it[-1], max(round(self.length), 2) + 1)
+        points = np.stack([np.interp(at, along_it, self.metres[:, axis]) for axis in (0, 1)], axis=1)
+        before, after, both = points[1:-1] - points[:-2], points[2:] - points[1:-1], points[2:] - points[:-2]
+        product = np.hypot(*before.T) * np.hypot(*after.T) * np.hypot(*both.T)
+        twice = 2.0 * np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+        curvature = np.divide(twice, product, out=np.zeros(len(product)), where=product > 0)
+        return float(curvature.max()), float(curvature.mean())
+
 
 def _length(points: np.ndarray) -> float:
     return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def path_length(moves: Moves, path: np.ndarray) -> float:
+    """Return the Euclidean length, in cells, of the line from each cell to the next, given by their indices."""
+    return _length(moves.cells(path))
 
 
 def visible(moves: Moves, cells: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -74,6 +103,71 @@ def digital_line(moves: Moves, cell: int, other: int) -> np.ndarray:
     """
     line, n = append_line(moves.width, cell, other, np.array([cell]), 1)
     return line[:n].copy()
+
+
+def smoothed(moves: Moves, path: np.ndarray, backward: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Return the waypoints of a path when each jumps to the last cell in sight, and the cells of the lines between them.
+
+    Parameters
+    ----------
+    moves : Moves
+    path : numpy.ndarray of int64, shape (n,)
+        Indices of cells, each of which a legal step leads to from the one before.
+    backward : bool
+        Whether to jump from the end to the start. What is returned leads from the start to the end all the same.
+
+    Returns
+    -------
+    waypoints : numpy.ndarray of int64, shape (m,)
+    cells : numpy.ndarray of int64, shape (k,)
+    """
+    while True:
+        way = path[::-1].copy() if backward else path
+        waypoints = farthest_seen(moves.legal, moves.offsets, moves.width, way, backward)
+        waypoints = waypoints[::-1].copy() if backward else waypoints
+        cells = along(moves.width, waypoints)
+        path = cut_loops(Sequences(cells, np.array([0, len(cells)])), moves.n_cells).cells
+        # Lines may cross one another; what is left then is smoothed anew.
+        if len(path) == len(cells):
+            return waypoints, cells
+
+
+def shorten(moves: Moves, path: np.ndarray, max_passes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shorten a path by line of sight, forward and backward in turn, until neither gains a tenth of a cell.
+
+    Each pass starts from all cells of the path before. It counts only if it is shorter, or as long with fewer waypoints:
+    rounding to cells moves points, so that without this rule passes may run in circles.
+
+    Parameters
+    ----------
+    moves : Moves
+    path : numpy.ndarray of int64, shape (n,)
+    max_passes : int
+
+    Returns
+    -------
+    waypoints : numpy.ndarray of int64, shape (m,)
+        Each sees the next.
+    cells : numpy.ndarray of int64, shape (k,)
+    lengths : numpy.ndarray of float, shape (passes + 1,)
+        Euclidean length in cells before the first pass, and after each.
+
+    References
+    ----------
+    Hliwa and Atieh, algorithm 1.
+    """
+    waypoints, cells = path, path
+    lengths = [path_length(moves, path)]
+    idle = 0
+    while idle < 2 and len(lengths) <= max_passes:
+        tried = smoothed(moves, cells, backward=len(lengths) % 2 == 0)
+        gain = lengths[-1] - path_length(moves, tried[0])
+        # The first pass of a straight path gains nothing but fewer waypoints.
+        if gain > _ROUNDING or (gain > -_ROUNDING and len(tried[0]) < len(waypoints)):
+            waypoints, cells = tried
+        idle = 0 if gain >= _LEAST_GAIN else idle + 1
+        lengths.append(path_length(moves, waypoints))
+    return waypoints, cells, np.array(lengths)
 
 
 @kernel
@@ -147,13 +241,15 @@ def append_line(width, cell, other, path, n):
 
 
 @kernel
-def farthest_seen(legal, offsets, width, path):
+def farthest_seen(legal, offsets, width, path, backward=False):
     """Return which cells of a path are left when each sees the next: the first, the last that it sees, and so on.
 
     Parameters
     ----------
     path : int64, shape (n,)
         Indices of cells, each of which a legal step leads to from the one before.
+    backward : bool
+        Whether the path leads from its end to its start: then each must be seen by the next.
 
     Returns
     -------
@@ -165,7 +261,11 @@ def farthest_seen(legal, offsets, width, path):
     n, i = 1, 0
     while i < len(path) - 1:
         j = len(path) - 1
-        while j > i + 1 and not sees(legal, offsets, width, path[i], path[j]):
+        while j > i + 1:
+            if backward and sees(legal, offsets, width, path[j], path[i]):
+                break
+            if not backward and sees(legal, offsets, width, path[i], path[j]):
+                break
             j -= 1
         i = j
         kept[n] = path[i]

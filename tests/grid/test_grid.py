@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import OccupancyGrid, inflation
+from pymoo_gridpath.grid.inflation import disc_of
 
 
 def random_grid(seed, shape=(7, 9), density=0.35, corner_cutting=False):
@@ -163,6 +164,19 @@ def test_inflation_occupies_what_a_disc_would_touch(seed, radius, resolution):
             touched = bool(len(gaps)) and gaps.min() < radius
             assert inflated.occupied[y, x] == (grid.occupied[y, x] or touched)
     assert inflated.resolution == grid.resolution and inflated.name == grid.name
+
+
+@pytest.mark.parametrize("radius", [0.6, 1.0, 3.7, 9.4])
+def test_both_ways_to_grow_obstacles_agree(radius):
+    for seed in range(5):
+        occupied, disc = random_grid(seed, (6, 31), 0.05).occupied, disc_of(radius, 31)
+        np.testing.assert_array_equal(inflation._by_rows(occupied, disc), inflation._by_convolution(occupied, disc))
+
+
+def test_a_radius_in_cells():
+    assert OccupancyGrid([[0, 0]], resolution=0.25).radius_in_cells(1.5) == 6.0
+    with pytest.raises(GridError, match="robot radius is -1, expected"):
+        OccupancyGrid([[0, 0]]).radius_in_cells(-1)
 
 
 @pytest.mark.parametrize("radius", [-0.1, math.nan, math.inf])

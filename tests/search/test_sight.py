@@ -14,7 +14,17 @@ from hypothesis import strategies as st
 from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.sight import Waypoints, along, chain_is_legal, digital_line, farthest_seen, line_is_free, visible
+from pymoo_gridpath.search.sight import (
+    Waypoints,
+    along,
+    chain_is_legal,
+    digital_line,
+    farthest_seen,
+    line_is_free,
+    shorten,
+    smoothed,
+    visible,
+)
 from pymoo_gridpath.testing.reference import broken_cells, is_legal, walk
 
 
@@ -126,6 +136,41 @@ def test_shortened_paths_are_legal_see_on_and_are_no_longer(grid_and_rng):
 
     waypoints = Waypoints.of(grid, moves.cells(kept))
     assert waypoints.length <= octile(again) + 1e-9 <= octile(cells) + 2e-9
+
+
+@settings(max_examples=100)
+@given(grids())
+def test_backward_passes_lead_from_the_start_to_the_goal_all_the_same(grid_and_rng):
+    grid, rng = grid_and_rng
+    free = np.argwhere(~grid.occupied)[:, ::-1]
+    if len(free) < 2:
+        return
+    start, goal = (tuple(int(v) for v in cell) for cell in free[rng.choice(len(free), 2, replace=False)])
+    cells = walk(grid, start, goal, rng)
+    if cells is None:
+        return
+    moves = Moves(grid)
+    path = np.array([moves.index(cell) for cell in cells])
+    for waypoints, again in (smoothed(moves, path, backward=True), shorten(moves, path, 9)[:2]):
+        assert visible(moves, waypoints[:-1], waypoints[1:]).all()
+        assert is_legal([tuple(cell) for cell in moves.cells(again).tolist()], grid, start, goal)
+        assert set(waypoints) <= set(again)
+    waypoints, again = smoothed(moves, path, backward=True)
+    if set(waypoints) <= set(path) and len(along(moves.width, waypoints)) == len(again):
+        place = [list(path).index(cell) for cell in waypoints]
+        for i, j in pairwise(place):
+            # Each is the first that sees the next.
+            assert not visible(moves, path[:i], np.full(i, path[j])).any()
+
+
+def test_curvature_is_that_of_a_circle_and_none_of_a_straight_line():
+    angles = np.linspace(0, 2, 4000)
+    grid = OccupancyGrid(np.zeros((5, 5)), resolution=0.1)
+    circle = 40.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    assert Waypoints(circle, 0.1 * circle).curvature == pytest.approx((0.25, 0.25), rel=1e-3)
+    assert Waypoints.of(grid, np.array([[0, 0], [4, 2]])).curvature == pytest.approx((0.0, 0.0), abs=1e-9)
+    # A right angle between two pieces of a cell: the circle through its ends has the diagonal for its diameter.
+    assert Waypoints.of(grid, np.array([[0, 0], [1, 0], [1, 1]])).curvature == pytest.approx((10 * math.sqrt(2),) * 2)
 
 
 def test_waypoints_are_in_cells_and_in_metres():
