@@ -156,9 +156,11 @@ def test_children_join_a_head_and_a_tail_at_a_shared_cell(query):
     assert np.array_equal(X, before)
     for i in range(X.shape[1]):
         a, b = cells(problem, X[0, i]), cells(problem, X[1, i])
-        # Of several visits of a cell any may be where the tails are exchanged.
         joins = {
-            (tuple(without_loops(a[:k] + b[j:])), tuple(without_loops(b[:j] + a[k:])))
+            tuple(
+                tuple(child if len(child) <= problem.n_var else parent)
+                for child, parent in ((without_loops(a[:k] + b[j:]), a), (without_loops(b[:j] + a[k:]), b))
+            )
             for k in range(1, len(a) - 1)
             for j in range(1, len(b) - 1)
             if a[k] == b[j]
