@@ -10,6 +10,7 @@ from pymoo_gridpath.algorithms.paper import Setup, ahmed_deb_2013
 from pymoo_gridpath.algorithms.runs import minimize_runs
 from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.algorithms.termination import FirstLegalPath
+from pymoo_gridpath.algorithms.variable_length import PRINTED_RULES, variable_length_ga
 from pymoo_gridpath.planners import (
     AStar,
     BestFirst,
@@ -31,6 +32,7 @@ from pymoo_gridpath.search.sight import Waypoints
 __all__ = [
     "ALGORITHMS",
     "CAPABILITIES",
+    "PRINTED_RULES",
     "AStar",
     "BestFirst",
     "BreadthFirst",
@@ -57,4 +59,5 @@ __all__ = [
     "make_algorithm",
     "minimize_runs",
     "reference_directions",
+    "variable_length_ga",
 ]

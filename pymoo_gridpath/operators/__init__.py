@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pymoo_gridpath.operators.cells import CellMutation, GreedySampling, SharedCellCrossover
 from pymoo_gridpath.operators.crossover import (
     DiscreteSBX,
     MixedCrossover,
@@ -17,9 +18,10 @@ from pymoo_gridpath.operators.path_mutation import PathMutation
 from pymoo_gridpath.operators.path_repair import PathRepair
 from pymoo_gridpath.operators.path_sampling import ReachableSampling, ScalarizedSampling
 from pymoo_gridpath.operators.repair import EdgeFixing
+from pymoo_gridpath.operators.roulette import ElitistSurvival, RouletteSelection
 from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.operators.selection import SmoothnessTournament
-from pymoo_gridpath.operators.sets import default_operators, paper_operators, path_operators
+from pymoo_gridpath.operators.sets import cell_operators, default_operators, paper_operators, path_operators
 from pymoo_gridpath.operators.survival import RankAndSmoothness
 from pymoo_gridpath.registry import OPERATORS
 
@@ -27,9 +29,12 @@ __all__ = [
     "OPERATORS",
     "ArrayMating",
     "BitwiseMutation",
+    "CellMutation",
     "DiscretePolynomialMutation",
     "DiscreteSBX",
     "EdgeFixing",
+    "ElitistSurvival",
+    "GreedySampling",
     "MixedCrossover",
     "MixedMutation",
     "PathMutation",
@@ -38,12 +43,15 @@ __all__ = [
     "RandomSampling",
     "RankAndSmoothness",
     "ReachableSampling",
+    "RouletteSelection",
     "RowDuplicates",
     "ScalarizedSampling",
+    "SharedCellCrossover",
     "SinglePointCrossover",
     "SmoothnessTournament",
     "SpliceCrossover",
     "TwoPointCrossover",
+    "cell_operators",
     "default_operators",
     "paper_operators",
     "path_operators",

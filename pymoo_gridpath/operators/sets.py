@@ -1,12 +1,17 @@
-"""Which operators go together: the paper's for its codings, and those that know paths."""
+"""Which operators go together: the paper's for its codings, those that know paths, and those of lists of cells."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, Literal
+
+from pymoo.core.duplicate import NoDuplicateElimination
+from pymoo.core.repair import NoRepair
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.operators.crossover import DiscreteSBX, MixedCrossover, TwoPointCrossover
+from pymoo_gridpath.operators.cells import CellMutation, GreedySampling, SharedCellCrossover, cells_of
+from pymoo_gridpath.operators.crossover import DiscreteSBX, MixedCrossover, SinglePointCrossover, TwoPointCrossover
 from pymoo_gridpath.operators.duplicates import RowDuplicates
 from pymoo_gridpath.operators.mutation import BitwiseMutation, DiscretePolynomialMutation, MixedMutation
 from pymoo_gridpath.operators.parameters import CROSSOVER_RATE, ETA_CROSSOVER, ETA_MUTATION
@@ -16,6 +21,7 @@ from pymoo_gridpath.operators.path_repair import PathRepair
 from pymoo_gridpath.operators.path_sampling import ReachableSampling, ScalarizedSampling
 from pymoo_gridpath.operators.path_terrain import terrain_of
 from pymoo_gridpath.operators.repair import EdgeFixing
+from pymoo_gridpath.operators.roulette import ElitistSurvival, RouletteSelection
 from pymoo_gridpath.operators.sampling import RandomSampling
 from pymoo_gridpath.representations.base import Representation, representation_of
 from pymoo_gridpath.representations.mixed import MixedRepresentation
@@ -164,3 +170,46 @@ def default_operators(problem) -> dict:
         If the problem has no path representation.
     """
     return paper_operators(problem) if default_set(representation_of(problem).paper) == "paper" else path_operators(problem)
+
+
+#: Rules of `cell_operators` that can be had as they are printed.
+PRINTED = ("start", "roulette", "variation")
+
+
+def cell_operators(problem, printed: Collection[str] = ()) -> dict:
+    """Return the operators of the variable-length genetic algorithm, of which `variable_length_ga` says where they come from.
+
+    They are for the "cells" representation and one objective, and make paths across obstacles too: ``GA(pop_size=50,
+    **cell_operators(problem))``, with ``obstacles="constraint"``.
+
+    Parameters
+    ----------
+    problem : GridPathProblem
+    printed : collection of {"start", "roulette", "variation"}, default ()
+        Which rules to take as they are printed.
+
+    Returns
+    -------
+    dict
+        ``sampling``, ``selection``, ``crossover``, ``mutation``, ``survival``, and a ``repair`` and ``eliminate_duplicates``
+        that do nothing: the algorithm has neither.
+
+    Raises
+    ------
+    GridPathError
+        If a rule is unknown, or the problem has another representation.
+    """
+    rules = set(checks.items("printed", printed, f"some of {', '.join(PRINTED)}"))
+    for rule in rules:
+        checks.one_of("a rule of printed", rule, PRINTED)
+    cells_of(problem, "cell_operators")
+    torn = "variation" in rules
+    return {
+        "sampling": GreedySampling(greedy="start" in rules),
+        "selection": RouletteSelection(literal="roulette" in rules),
+        "crossover": SinglePointCrossover() if torn else SharedCellCrossover(),
+        "mutation": CellMutation(anywhere=torn),
+        "survival": ElitistSurvival(),
+        "repair": NoRepair(),
+        "eliminate_duplicates": NoDuplicateElimination(),
+    }

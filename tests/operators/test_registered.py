@@ -60,7 +60,7 @@ def problem():
 def test_all_public_operators_of_the_package_have_their_names():
     public = [getattr(operators, name) for name in operators.__all__]
     fitting = {cls for cls in public if isinstance(cls, type) and issubclass(cls, tuple(BASES.values()))}
-    assert len(fitting) == 18
+    assert len(fitting) == 23
     assert {cls for name, cls in OPERATORS.registered().items() if name == cls.__name__} == fitting | {
         StrengthAndSmoothness,
         StrengthTournament,
@@ -128,7 +128,10 @@ def test_planners_that_take_operators_are_given_objects(problem):
         ({"mutation": "PathMutatoin"}, r"there is no mutation 'PathMutatoin'; did you mean 'PathMutation'\?"),
         ({"survival": "eagr"}, r"there is no survival 'eagr'; did you mean 'eager'\?"),
         ({"repair": "PathMutation"}, r"there is no repair 'PathMutation'; expected one of|did you mean 'PathRepair'"),
-        ({"selection": ""}, r"there is no selection ''; expected one of SmoothnessTournament, StrengthTournament$"),
+        (
+            {"selection": ""},
+            r"there is no selection ''; expected one of RouletteSelection, SmoothnessTournament, StrengthTournament$",
+        ),
         ({"crossover": "x" * 10**5}, r"there is no crossover 'x+\.\.\.x+'; expected one of"),
         ({"survival": "gone"}, "the operator 'gone' of the installed package cannot be imported from no_such_module:X"),
         ({"crossover": "PointCrossover"}, "crossover is 'PointCrossover', which needs n_points; expected an object in place"),

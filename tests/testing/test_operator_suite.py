@@ -7,11 +7,14 @@ import pytest
 
 from pymoo_gridpath.operators import (
     BitwiseMutation,
+    CellMutation,
     DiscretePolynomialMutation,
     DiscreteSBX,
+    GreedySampling,
     PathMutation,
     RandomSampling,
     ReachableSampling,
+    SharedCellCrossover,
     SpliceCrossover,
     TwoPointCrossover,
 )
@@ -64,6 +67,36 @@ class TestRandomSampling(OperatorSuite):
 class TestReachableSampling(OperatorSuite):
     def make(self):
         return ReachableSampling()
+
+
+class TestGreedySampling(OperatorSuite):
+    representation = "cells"
+
+    def make(self):
+        return GreedySampling()
+
+
+class TestSharedCellCrossover(OperatorSuite):
+    representation = "cells"
+
+    def make(self):
+        return SharedCellCrossover()
+
+
+class TestCellMutation(OperatorSuite):
+    representation = "cells"
+
+    def make(self):
+        return CellMutation(prob_var=0.3)
+
+
+class TestCellMutationAnywhere(OperatorSuite):
+    """Of which hardly any row is a path."""
+
+    representation = "cells"
+
+    def make(self):
+        return CellMutation(prob_var=0.3, anywhere=True)
 
 
 class Beyond(DiscretePolynomialMutation):
