@@ -1,6 +1,14 @@
 """Path planning as pymoo problems, and generators of scenarios."""
 
 from pymoo_gridpath.problems.grid_path import OBSTACLES, GridPathProblem
+from pymoo_gridpath.problems.moving import MovingObstaclesProblem, ObstacleClock, random_movers
 from pymoo_gridpath.problems.scenarios import random_dense_grid
 
-__all__ = ["OBSTACLES", "GridPathProblem", "random_dense_grid"]
+__all__ = [
+    "OBSTACLES",
+    "GridPathProblem",
+    "MovingObstaclesProblem",
+    "ObstacleClock",
+    "random_dense_grid",
+    "random_movers",
+]
