@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any, cast
 
 import numpy as np
+from pymoo.core.population import Population
 from world import Call, World
 
 import pymoo_gridpath
@@ -87,6 +88,7 @@ def _maps(w: World) -> dict[str, Call]:
 def _problems(w: World) -> dict[str, Call]:
     problem, limited = w.problem, w.limited
     paths = problem.decode(w.legal_rows)
+    moving = problems.MovingObstaclesProblem(w.grid, [[(-1, 0), (-2, 0)]], **w.query)
     own = {"grid": w.grid, **w.query, "representation": "integer", "objectives": ("length", "vulnerability"), "axis": "x"}
     return {
         "GridPathProblem": (
@@ -99,6 +101,27 @@ def _problems(w: World) -> dict[str, Call]:
         "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),
         "GridPathProblem.score": (problem.score, {"paths": paths}),
+        "MovingObstaclesProblem": (
+            problems.MovingObstaclesProblem,
+            {
+                "base": w.grid,
+                "movers": [[(-1, 0), (-2, 0)]],
+                **w.query,
+                "taut": 3,
+                "objectives": ["length", "vulnerability"],
+                "penalty": 3.0,
+                "max_cells": 60,
+            },
+        ),
+        "MovingObstaclesProblem.decode": (moving.decode, {"X": w.rows(moving)}),
+        "MovingObstaclesProblem.is_stale": (moving.is_stale, {"pop": Population.new("X", w.rows(moving))}),
+        "MovingObstaclesProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
+        "MovingObstaclesProblem.score": (moving.score, {"paths": moving.decode(w.rows(moving))}),
+        "ObstacleClock": (problems.ObstacleClock, {"told": True}),
+        "random_movers": (
+            problems.random_movers,
+            {"grid": w.grid, **w.query, "n_movers": 1, "n_epochs": 3, "random_state": 1},
+        ),
         "random_dense_grid": (problems.random_dense_grid, {"size": 8, "p0": 0.3, "random_state": 1}),
         "convex_environment": (problems.convex_environment, {"random_state": 1}),
         "concave_environment": (problems.concave_environment, {"random_state": 1}),

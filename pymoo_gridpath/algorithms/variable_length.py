@@ -15,7 +15,7 @@ from pymoo_gridpath.algorithms.paper import Setup
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Length, Objective
 from pymoo_gridpath.operators import cell_operators
-from pymoo_gridpath.operators.sets import PRINTED
+from pymoo_gridpath.operators.sets import PRINTED, printed_rules
 from pymoo_gridpath.problems import GridPathProblem
 from pymoo_gridpath.representations import CellSequence
 
@@ -114,9 +114,7 @@ def variable_length_ga(
     for name, value in (("pop_size", pop_size), ("n_gen", n_gen)):
         checks.whole(name, value, 1)
     checks.instance("termination", termination, Termination, " of pymoo", optional=True)
-    rules = set(checks.items("printed", printed, f"some of {', '.join(PRINTED_RULES)}"))
-    for rule in rules:
-        checks.one_of("a rule of printed", rule, PRINTED_RULES)
+    rules = printed_rules(printed, PRINTED_RULES)
     objective = PrintedLength() if "distances" in rules else Length()
     coding = CellSequence(grid, start, goal, max_cells)
     problem = GridPathProblem(grid, start, goal, coding, [objective], "constraint")

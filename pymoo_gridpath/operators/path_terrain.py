@@ -9,12 +9,12 @@ import numpy as np
 
 from pymoo_gridpath.objectives import moves_of, visiting_costs
 from pymoo_gridpath.paths.sequences import Sequences
-from pymoo_gridpath.representations.base import max_cells, representation_of
+from pymoo_gridpath.representations.base import Representation, max_cells, representation_of
 from pymoo_gridpath.search.sequences import are_legal, mend
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
 
-# Made once for each problem; kept apart from it, so that it pickles and compares as before.
-_TERRAINS: weakref.WeakKeyDictionary[Any, tuple[Terrain, list[int]]] = weakref.WeakKeyDictionary()
+# Made once for each problem, and anew when its map is another; kept apart from it, so that it pickles and compares as before.
+_TERRAINS: weakref.WeakKeyDictionary[Any, tuple[Representation, Terrain, list[int]]] = weakref.WeakKeyDictionary()
 
 # Weight of the length where it is no objective: of ways that cost the same, the shorter.
 LEAST_WEIGHT = FULL_WEIGHT // 64
@@ -28,13 +28,14 @@ def terrain_of(problem) -> Terrain:
     GridPathError
         If the problem has no path representation.
     """
-    return _known_of(problem)[0]
+    return _known_of(problem)[1]
 
 
-def _known_of(problem) -> tuple[Terrain, list[int]]:
-    """Return the terrain of a problem, and the numbers of its terms that are objectives, at least one."""
+def _known_of(problem) -> tuple[Representation, Terrain, list[int]]:
+    """Return the representation and terrain of a problem, and the numbers of the terms that are objectives, at least one."""
     representation = representation_of(problem)
-    if problem not in _TERRAINS:
+    known = _TERRAINS.get(problem)
+    if known is None or known[0] is not representation:
         fields = [visiting_costs(objective, problem.grid, representation.box) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)
@@ -43,8 +44,8 @@ def _known_of(problem) -> tuple[Terrain, list[int]]:
         # What tells straight steps from diagonal ones goes by the length.
         if not terms or any(isinstance(moves_of(objective, problem.grid), tuple) for objective in problem.objectives):
             terms.insert(0, 0)
-        _TERRAINS[problem] = terrain, terms
-    return _TERRAINS[problem]
+        _TERRAINS[problem] = known = representation, terrain, terms
+    return known
 
 
 def paths_of(problem, X: np.ndarray) -> Sequences:
@@ -65,7 +66,7 @@ def random_weights(problem, n: int, random_state) -> np.ndarray:
 
 def objective_terms(problem) -> list[int]:
     """Return the numbers of the terms that are objectives, at least one."""
-    return _known_of(problem)[1]
+    return _known_of(problem)[2]
 
 
 def whole_weights(problem, shares: np.ndarray) -> np.ndarray:

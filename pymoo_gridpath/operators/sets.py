@@ -176,6 +176,12 @@ def default_operators(problem) -> dict:
 PRINTED = ("start", "roulette", "variation")
 
 
+def printed_rules(printed: Collection[str], known: Collection[str]) -> set[str]:
+    """Return rules that are to be taken as they are printed if they are known."""
+    given = checks.items("printed", printed, f"some of {', '.join(known)}")
+    return {checks.one_of("a rule of printed", rule, known) for rule in given}
+
+
 def cell_operators(problem, printed: Collection[str] = ()) -> dict:
     """Return the operators of the variable-length genetic algorithm, of which `variable_length_ga` says where they come from.
 
@@ -199,9 +205,7 @@ def cell_operators(problem, printed: Collection[str] = ()) -> dict:
     GridPathError
         If a rule is unknown, or the problem has another representation.
     """
-    rules = set(checks.items("printed", printed, f"some of {', '.join(PRINTED)}"))
-    for rule in rules:
-        checks.one_of("a rule of printed", rule, PRINTED)
+    rules = printed_rules(printed, PRINTED)
     cells_of(problem, "cell_operators")
     torn = "variation" in rules
     return {

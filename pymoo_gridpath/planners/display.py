@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from pymoo.util.display.column import Column
 from pymoo.util.display.output import Output
 
@@ -46,15 +47,15 @@ class PathOutput(Output):
         self.legal = Column("legal", width=6)
         self.length = Column("length", width=11)
         self.igd_plus = Column("igd+", width=9)
+        self._front: np.ndarray | None = None
+        self._measure: ReferenceFront | None = None
 
     def initialize(self, algorithm: Any) -> None:
         problem = algorithm.problem
         self.columns.append(self.legal)
         if "length" in problem.objective_names:
             self.columns.append(self.length)
-        front = problem.pareto_front() if self.distance else None
-        if front is not None and len(front):
-            self._front = ReferenceFront(front)
+        if self.distance and self._reference(problem) is not None:
             self.columns.append(self.igd_plus)
 
     def update(self, algorithm: Any) -> None:
@@ -65,4 +66,13 @@ class PathOutput(Output):
         if self.length in self.columns:
             self.length.set(f"{members.least('length'):.3f}" if len(F) else None)
         if self.igd_plus in self.columns:
-            self.igd_plus.set(f"{self._front.igd_plus(F):.6f}" if len(F) else None)
+            reference = self._reference(algorithm.problem)
+            self.igd_plus.set(f"{reference.igd_plus(F):.6f}" if len(F) and reference is not None else None)
+
+    def _reference(self, problem) -> ReferenceFront | None:
+        """Return the front of a problem, which is another one where its map has changed."""
+        # The problem keeps it.
+        front = problem.pareto_front()
+        if front is not self._front:
+            self._front, self._measure = front, None if front is None or not len(front) else ReferenceFront(front)
+        return self._measure

@@ -1,6 +1,7 @@
 """Path planning as pymoo problems, and generators of scenarios."""
 
 from pymoo_gridpath.problems.grid_path import OBSTACLES, GridPathProblem
+from pymoo_gridpath.problems.moving import MovingObstaclesProblem, ObstacleClock, random_movers
 from pymoo_gridpath.problems.scenarios import (
     concave_environment,
     convex_environment,
@@ -12,9 +13,12 @@ from pymoo_gridpath.problems.scenarios import (
 __all__ = [
     "OBSTACLES",
     "GridPathProblem",
+    "MovingObstaclesProblem",
+    "ObstacleClock",
     "concave_environment",
     "convex_environment",
     "far_corners",
     "maze_environment",
     "random_dense_grid",
+    "random_movers",
 ]

@@ -105,6 +105,7 @@ def test_larger_maps_are_no_trouble():
         ({"n_gen": 1.5}, "n_gen is 1.5"),
         ({"printed": "start"}, "printed is 'start', expected some of distances, start, roulette, variation"),
         ({"printed": ["goal"]}, "a rule of printed is 'goal'"),
+        ({"printed": [np.zeros(2)]}, "a rule of printed is an array"),
         ({"termination": ("n_gen", 3)}, "expected a Termination of pymoo"),
         ({"max_cells": 3}, "max_cells is 3"),
     ],
