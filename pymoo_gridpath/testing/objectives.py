@@ -86,7 +86,7 @@ class ObjectiveSuite:
         if self.objective.combine == "sum" and not self.objective.additive:
             pytest.skip("it scores paths by a rule of its own")
         for grid, problem, paths in self._queries():
-            expected = [slow_score(self.objective, grid, cells) for cells in paths]
+            expected = slow_scores(self.objective, grid, paths)
             np.testing.assert_allclose(_scores(problem, paths), expected, rtol=1e-9, atol=1e-9)
 
     def test_a_batch_scores_as_its_paths_alone(self):
@@ -123,7 +123,7 @@ class ObjectiveSuite:
                     with pytest.raises(CapabilityError):
                         exact_front(problem)
                     continue
-                rows = [[slow_score(one, grid, cells) for one in problem.objectives] for cells in paths]
+                rows = np.stack([slow_scores(one, grid, paths) for one in problem.objectives], axis=1)
                 # Sums of the same costs in another order count as the same.
                 expected = non_dominated(tuple(row) for row in np.round(rows, 9).tolist())
                 found = exact_front(problem)
@@ -140,16 +140,21 @@ class ObjectiveSuite:
         assert (problem.decode(X).interfering_cells == 0).all()
 
 
-def slow_score(objective: Objective, grid: OccupancyGrid, cells: tuple[Cell, ...]) -> float:
-    """Return what a legal path costs by what an objective says, one cell and one step after another."""
-    field, moves = objective.field(grid), objective.moves(grid)
-    visited = [] if field is None else [float(np.asarray(field)[y, x]) for x, y in cells]
+def slow_scores(objective: Objective, grid: OccupancyGrid, paths: list[tuple[Cell, ...]]) -> list[float]:
+    """Return what legal paths cost by what an objective says, one cell and one step after another."""
+    given, moves = objective.field(grid), objective.moves(grid)
+    field = None if given is None else np.asarray(given, dtype=float).tolist()
+    steps = np.asarray((0.0, 0.0) if moves is None else moves, dtype=float).tolist()
+    return [_slow_score(objective, field, steps, cells) for cells in paths]
+
+
+def _slow_score(objective: Objective, field: list | None, steps: list, cells: tuple[Cell, ...]) -> float:
+    visited = [] if field is None else [field[y][x] for x, y in cells]
     if objective.combine != "sum":
         return min(visited) if objective.combine == "least" else max(visited)
     headings = [STEPS.index((b[0] - a[0], b[1] - a[1])) for a, b in itertools.pairwise(cells)]
-    steps = np.zeros(2) if moves is None else np.asarray(moves, dtype=float)
     for heading, (x, y) in zip(headings, cells[1:], strict=True):
-        visited.append(float(steps[heading % 2] if steps.ndim == 1 else steps[heading, y, x]))
+        visited.append(steps[heading % 2] if len(steps) == 2 else steps[heading][y][x])
     return sum(visited) + objective.turn_cost * sum(itertools.starmap(turn_between, itertools.pairwise(headings)))
 
 
