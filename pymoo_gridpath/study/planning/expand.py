@@ -86,7 +86,7 @@ def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> Plan
         content: dict[str, Any] = {"preset": spec.preset, "pop_size": spec.pop_size or POP_SIZE}
     elif spec.is_made:
         flags = flags_of(own.read(spec.algorithm["class"], ALGORITHM, ("algorithm",)).cls)
-        content = {"algorithm": made.entry_of(spec.algorithm, made=True, **flags)}
+        content = {"algorithm": made.entry_of(spec.algorithm, ALGORITHM, made=True, **flags)}
     elif (planner := planner_of(spec.algorithm)) is not None:
         budget = {key: getattr(spec, key) for key in own_budget(planner)}
         content = {"algorithm": spec.algorithm, **budget}
