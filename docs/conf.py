@@ -57,7 +57,18 @@ html_static_path = ["_static"]
 html_css_files = ["custom.css"]
 html_show_sourcelink = False
 html_copy_source = False
-PLAIN_PAGES = ("index", "tutorial", "method", "algorithms", "exact", "companions", "maps", "command_line", "internals")
+PLAIN_PAGES = (
+    "index",
+    "tutorial",
+    "method",
+    "algorithms",
+    "exact",
+    "companions",
+    "maps",
+    "command_line",
+    "extend",
+    "internals",
+)
 html_sidebars = {page: [] for page in PLAIN_PAGES}
 html_theme_options = {
     "logo": {"text": "pymoo_gridpath"},
@@ -95,6 +106,8 @@ def set_up_kernels(app, config):
     profile.mkdir(parents=True, exist_ok=True)
     (profile / "ipython_kernel_config.py").write_text('c.IPKernelApp.log_level = "ERROR"\n')
     os.environ["IPYTHONDIR"] = str(profile.parent)
+    # Pages run in folders of their own.
+    os.environ["DOCS_FOLDER"] = str(app.srcdir)
 
 
 def setup(app):

@@ -10,16 +10,25 @@ import subprocess
 import sys
 from importlib.metadata import EntryPoint
 
+import numpy as np
 import pytest
+from pymoo.algorithms.moo.moead import MOEAD
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.optimize import minimize
 
+from pymoo_gridpath.algorithms import make_algorithm, reference_directions
+from pymoo_gridpath.convergence import ConvergenceRecorder
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.objectives import Vulnerability
-from pymoo_gridpath.operators import OPERATORS, DiscreteSBX, RankAndSmoothness, paper_operators
+from pymoo_gridpath.operators import OPERATORS, DiscreteSBX, RankAndSmoothness, paper_operators, path_operators
 from pymoo_gridpath.operators.parameters import number
-from pymoo_gridpath.representations import IntegerRepresentation
-from pymoo_gridpath.study import LocalProcesses, Store, Study, load_study, plan_study, run_study
+from pymoo_gridpath.planners import ExactFront
+from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
+from pymoo_gridpath.representations import CellSequence, IntegerRepresentation
+from pymoo_gridpath.study import LocalProcesses, Store, Study, load_study, plan_study, run_study, write_report
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem
 from pymoo_gridpath.study.running.record import from_bytes
+from pymoo_gridpath.study.specification.own import code_of
 
 MODULE = """
 import os
@@ -174,6 +183,7 @@ import pickle, sys
 sys.path.insert(0, {str(tmp_path)!r})
 from pymoo_gridpath.study.running.execute import execute
 from pymoo_gridpath.study.running.record import from_bytes
+from pymoo_gridpath.study.specification.own import code_of
 print(from_bytes(execute(pickle.loads({pickle.dumps(plan.task(plan.runs[0]))!r}))).message)
 """
     out = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
@@ -319,7 +329,103 @@ def test_objects_that_cannot_be_written_down_are_refused(hikers):
         with pytest.raises(StudyError, match="cannot be written down as a class and its arguments"):
             planned(problem={"objectives": ["length", thing]})
     with pytest.raises(StudyError, match="expected its class, and the arguments"):
-        planned({"algorithm": hikers.Greedy()})
+        planned({"algorithm": hikers.Greedy(survival=lambda: None)})
+
+
+def made_algorithms(hikers):
+    """Return functions that make algorithms, each with something else."""
+    coded = GridPathProblem(random_dense_grid(8, 0.2, 1), (0, 0), (7, 7), "integer")
+    operators, directions = path_operators(coded), reference_directions(2, 8)
+    return {
+        "by hand": lambda: NSGA2(pop_size=8, **operators),
+        "with arguments": lambda: NSGA2(pop_size=8, **{**operators, "crossover": hikers.Sbx(eta=3.0)}),
+        "of one's own": lambda: hikers.Greedy(8, strength=2.0, **operators),
+        "by name": lambda: make_algorithm("NSGA-II", coded, pop_size=8),
+        "by directions": lambda: make_algorithm("MOEA/D", coded, pop_size=8),
+        "pymoo's by directions": lambda: MOEAD(directions, **{key: operators[key] for key in ("sampling", "mutation")}),
+    }
+
+
+def test_an_algorithm_that_is_made_already_is_taken_as_it_is(hikers):
+    keys = set()
+    for make in made_algorithms(hikers).values():
+        plan = planned({"algorithm": make(), "pop_size": None})
+        problem, algorithm = built(plan)
+        found, expected = (minimize(problem, one, ("n_gen", 3), seed=4).pop for one in (algorithm, make()))
+        assert np.array_equal(found.get("X"), expected.get("X")) and np.array_equal(found.get("F"), expected.get("F"))
+        (key,) = {planned({"algorithm": make(), "pop_size": None}).runs[0].key, plan.runs[0].key}
+        keys.add(key)
+        # From a file, too.
+        tables = json.loads(json.dumps(Study.from_dict(study_of({"algorithm": make()})).to_dict()))
+        assert plan_study(Study.from_dict(tables)).runs[0].key == key
+    assert len(keys) == len(made_algorithms(hikers))
+
+
+def study_of(algorithm):
+    problem = {"random": {"size": 8, "p0": 0.2}, "representation": "integer"}
+    budget = {"generations": 2}
+    return {"problems": [problem], "algorithms": [algorithm], "seeds": 1, "budget": budget, "reference": False}
+
+
+def test_an_algorithm_that_is_made_already_runs_in_other_processes(hikers, tmp_path):
+    make = made_algorithms(hikers)["with arguments"]
+    plan = planned({"algorithm": make(), "pop_size": None})
+    with LocalProcesses(2) as executor:
+        outcome = run_study(plan, tmp_path / "out", executor)
+    assert (outcome.n_run, outcome.n_failed) == (1, 0)
+    stored = Store(tmp_path / "out").read_plan()
+    assert stored.algorithms[0].label == "NSGA2"
+    crossover = stored.algorithms[0].spec["algorithm"]["arguments"]["crossover"]
+    assert (crossover["class"], crossover["arguments"]) == ("hikers:Sbx", {"eta": 3.0}) and crossover["code"].startswith(
+        "sha256"
+    )
+    write_report(tmp_path / "out", formats=["svg"])
+    assert "crossover=Sbx(eta=3.0)" in (tmp_path / "out" / "report" / "report.md").read_text().replace("\\", "")
+    # Other code of a part is another run.
+    (tmp_path / "hikers.py").write_text(MODULE + "\n# changed\n")
+    code_of.cache_clear()
+    assert planned({"algorithm": make(), "pop_size": None}).runs[0].key != plan.runs[0].key
+    code_of.cache_clear()
+
+
+def test_a_planner_and_a_representation_that_are_made_already_are_their_classes_with_arguments(hikers):
+    one = planned({"algorithm": ExactFront(max_seconds=5), "pop_size": None})
+    other = planned({"algorithm": "exact", "max_seconds": 5, "pop_size": None})
+    assert one.runs[0].key == other.runs[0].key
+    grid = random_dense_grid(8, 0.2, 1)
+    for coding, form in (
+        (CellSequence(grid, (0, 0), (7, 7), max_cells=30), {"class": "cells", "max_cells": 30}),
+        (IntegerRepresentation(grid, (0, 0), (7, 7)), "integer"),
+        (hikers.Mine(grid, (0, 0), (7, 7)), hikers.Mine),
+    ):
+        given, named = (planned(problem={"representation": one}) for one in (coding, form))
+        assert given.runs[0].key == named.runs[0].key
+    assert built(planned(problem={"representation": CellSequence(grid, (0, 0), (7, 7), 30)}))[0].n_var == 30
+
+
+@pytest.mark.parametrize(
+    ("make", "more", "message"),
+    [
+        (lambda: NSGA2(seed=3), {}, "seed is set in"),
+        (lambda: NSGA2(callback=ConvergenceRecorder()), {}, "callback is set in"),
+        (lambda: NSGA2(), {"pop_size": 8}, "takes no pop_size"),
+        (lambda: ExactFront(), {"parameters": {"max_memory": 9}}, "takes no parameters"),
+        (lambda: {"class": "NSGA2"}, {}, "expected 'package.module:Class'"),
+        (lambda: {"class": "hikers:Greedy", "strenth": 1}, {}, "did you mean 'strength'"),
+        (lambda: {"class": "hikers:Greedy", "mutation": {"class": "hikers:Nothing"}}, {}, "cannot be imported"),
+    ],
+)
+def test_what_no_algorithm_can_be_made_of_again_is_refused(hikers, make, more, message):
+    with pytest.raises(StudyError) as error:
+        planned({"algorithm": make(), "pop_size": None, **more})
+    assert message in str(error.value) and "\n" not in str(error.value)
+
+
+def test_an_algorithm_that_has_begun_is_refused(hikers):
+    algorithm = NSGA2(pop_size=8)
+    algorithm.setup(GridPathProblem(random_dense_grid(8, 0.2, 1), (0, 0), (7, 7), "integer"), ("n_gen", 2))
+    with pytest.raises(StudyError, match="has begun a run"):
+        planned({"algorithm": algorithm, "pop_size": None})
 
 
 @pytest.mark.parametrize(

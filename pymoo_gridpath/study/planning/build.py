@@ -21,7 +21,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.representations import Representation, make_representation
-from pymoo_gridpath.study.specification import own
+from pymoo_gridpath.study.specification import made, own
 from pymoo_gridpath.study.specification.kinds import ALGORITHM, OBJECTIVE, REPRESENTATION
 from pymoo_gridpath.study.specification.operators import make_operator, planner_of
 
@@ -92,8 +92,8 @@ def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> Grid
         As `GridPathProblem`.
     """
     key = json.dumps(problem, sort_keys=True)
-    made = _problems.get(key)
-    if made is None:
+    kept = _problems.get(key)
+    if kept is None:
         settings = {name: problem[name] for name in ("obstacles", "penalty", "potential_limit")}
         cells, query = build_grid(problem["grid"], grid), (problem["start"], problem["goal"])
         objectives = [one if isinstance(one, str) else own.make(one, OBJECTIVE) for one in problem["objectives"]]
@@ -104,11 +104,11 @@ def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> Grid
             else:
                 # As a class, which is told of the objectives if it asks.
                 representation = own.class_of(representation, REPRESENTATION)
-        made = GridPathProblem(cells, *query, representation, objectives, axis=axis, **settings)
-        _problems[key] = made
+        kept = GridPathProblem(cells, *query, representation, objectives, axis=axis, **settings)
+        _problems[key] = kept
         while len(_problems) > KEPT_PROBLEMS:
             _problems.popitem(last=False)
-    return made
+    return kept
 
 
 def build_representation(content: Any, grid: OccupancyGrid, start, goal, axis: Any) -> Representation:
@@ -151,7 +151,7 @@ def build_algorithm(algorithm: Mapping[str, Any], problem: GridPathProblem) -> A
         given["operators"] = _operators(given["operators"], problem)
     named = algorithm["algorithm"]
     if not isinstance(named, str):
-        named = own.class_of(named, ALGORITHM)
+        named = made.build(named) if "made" in named else own.class_of(named, ALGORITHM)
     return make_algorithm(named, problem, **given, **algorithm.get("parameters", {}))
 
 

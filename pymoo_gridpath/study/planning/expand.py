@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.algorithms import CAPABILITIES
+from pymoo_gridpath.algorithms import CAPABILITIES, find_algorithm
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.algorithms.paper import POP_SIZE
 from pymoo_gridpath.planners import reference_planner
@@ -27,9 +27,9 @@ from pymoo_gridpath.study.planning.plan import (
 )
 from pymoo_gridpath.study.planning.planned_problems import place_of, plan_problems, refuse
 from pymoo_gridpath.study.planning.trial import Pair, one_of_each_kind, run_briefly
-from pymoo_gridpath.study.specification import own
+from pymoo_gridpath.study.specification import made, own
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
-from pymoo_gridpath.study.specification.kinds import algorithm_entry, is_monotone, representation_entry
+from pymoo_gridpath.study.specification.kinds import ALGORITHM, algorithm_entry, flags_of, is_monotone, representation_entry
 from pymoo_gridpath.study.specification.operators import operator_entry, own_budget, planner_of
 from pymoo_gridpath.study.specification.study import Study
 
@@ -84,6 +84,9 @@ def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> Plan
     """Return the canonical form of an algorithm, but for the defaults that depend on the problem."""
     if spec.preset is not None:
         content: dict[str, Any] = {"preset": spec.preset, "pop_size": spec.pop_size or POP_SIZE}
+    elif spec.is_made:
+        flags = flags_of(own.read(spec.algorithm["class"], ALGORITHM, ("algorithm",)).cls)
+        content = {"algorithm": made.entry_of(spec.algorithm, ALGORITHM, made=True, **flags)}
     elif (planner := planner_of(spec.algorithm)) is not None:
         budget = {key: getattr(spec, key) for key in own_budget(planner)}
         content = {"algorithm": spec.algorithm, **budget}
@@ -139,9 +142,9 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
                 message = "obstacles 'limit' needs potential_limit, the largest vulnerability of a path, beside it"
                 raise study.error(message, (*where, "obstacles"))
             problem = refuse(study, where, about, build_problem, content, planned.grid)
-            made = refuse(study, where, about, build_algorithm, settled, problem)
-            _check_pop_size(study, k, made, settled)
-            _check_promises(study, k, problem, settled, made)
+            built = refuse(study, where, about, build_algorithm, settled, problem)
+            _check_pop_size(study, k, built, settled)
+            _check_promises(study, k, problem, settled, built)
             if not has_own_budget(settled):
                 pairs.append(Pair(content, settled, planned.grid, planned.label, k))
             if content["representation"] not in checked and is_monotone(content["representation"]):
@@ -167,21 +170,23 @@ def _check_advancing(study: Study, where, members: list[PlannedProblem], content
         refuse(study, where, about, build_representation, content["representation"], grid, start, goal, content["axis"])
 
 
-def _check_pop_size(study: Study, k: int, made: Any, algorithm: Mapping[str, Any]) -> None:
+def _check_pop_size(study: Study, k: int, built: Any, algorithm: Mapping[str, Any]) -> None:
     """Refuse a size of populations beside what decides about it."""
     given = algorithm.get("parameters", {})
     decided = [key for key in ("ref_dirs", "pop_per_ref_point") if key in given]
-    if decided and study.algorithms[k].pop_size is not None and made.pop_size != algorithm["pop_size"]:
+    if decided and study.algorithms[k].pop_size is not None and built.pop_size != algorithm["pop_size"]:
         raise study.error(
-            f"pop_size is {algorithm['pop_size']}, but {decided[0]} makes it {made.pop_size}; leave pop_size out",
+            f"pop_size is {algorithm['pop_size']}, but {decided[0]} makes it {built.pop_size}; leave pop_size out",
             ("algorithms", k, "pop_size"),
         )
 
 
-def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any], made: Any) -> None:
+def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any], built: Any) -> None:
     """Refuse what would run, but not as a study promises."""
     name = algorithm.get("algorithm")
-    row = CAPABILITIES.get(name) if isinstance(name, str) else None
+    row: Any = CAPABILITIES.get(name) if isinstance(name, str) else None
+    if isinstance(name, Mapping) and "made" in name:
+        row = find_algorithm(type(built))
     if row is not None and problem.has_constraints() and not row.reproducible_constrained:
         raise study.error(
             f"{row.name} gives another result each time on problems with constraints, whatever the seed; "
@@ -189,9 +194,9 @@ def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any],
             ("algorithms", k),
         )
     most = study.budget.get("evaluations")
-    if most is not None and "pop_size" in algorithm and most < made.pop_size:
+    if most is not None and "pop_size" in algorithm and most < built.pop_size:
         raise study.error(
-            f"pop_size is {made.pop_size}, expected at most the {most} evaluations of the budget",
+            f"pop_size is {built.pop_size}, expected at most the {most} evaluations of the budget",
             ("algorithms", k, "pop_size"),
         )
 

@@ -145,12 +145,21 @@ def _own_algorithm(spec: dict[str, Any], where: Where) -> dict[str, Any]:
     """Return what stands in for an algorithm that is not of this package or pymoo, once that has been checked."""
     place = (*where, "algorithm")
     facts: dict[str, type] = {"deterministic": bool, "reference": bool, "pop_size": bool, "slots": list}
-    if isinstance(spec["algorithm"], Mapping) and "planner" in spec["algorithm"]:
+    if "made" in spec["algorithm"]:
+        facts = {"deterministic": bool, "reference": bool, "made": bool}
+        own.check_entry(spec["algorithm"], "algorithm", place, **facts)
+        spec = _table(spec, ("algorithm",), where, "the algorithm") | {"parameters": {}}
+        return _stand_in(spec)
+    if "planner" in spec["algorithm"]:
         facts["planner"] = bool
     own.check_entry(spec["algorithm"], "algorithm", place, **facts)
     takes = {"pop_size": spec["algorithm"]["pop_size"], "operators": spec["algorithm"]["slots"]}
     spec = _table(spec, ("algorithm", "parameters", *(key for key in takes if takes[key])), where, "the algorithm")
     values.table(spec["parameters"], (*where, "parameters"))
+    return _stand_in(spec)
+
+
+def _stand_in(spec: dict[str, Any]) -> dict[str, Any]:
     return {"pop_size": DEFAULT_POP_SIZE, "smoothness": None, "operators": {"base": "default"}} | {
         **spec,
         "algorithm": next(name for name, row in CAPABILITIES.items() if not row.unfit and not row.needs),

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
+
+from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.arguments import check_pop_size
@@ -11,8 +14,8 @@ from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.registry import SLOTS
+from pymoo_gridpath.study.specification import made, own, values
 from pymoo_gridpath.study.specification import operators as _operators
-from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import check_problem_settings, set_fields, set_given
 from pymoo_gridpath.study.specification.kinds import ALGORITHM, operator_slots, takes_pop_size
 from pymoo_gridpath.study.specification.parameters import accepted_parameters, parameters
@@ -26,10 +29,12 @@ class AlgorithmSpec:
 
     Parameters
     ----------
-    algorithm : str or type, optional
+    algorithm : str, type, mapping or pymoo.core.algorithm.Algorithm, optional
         What `make_algorithm` takes; or an algorithm of your own: the path of its class,
         ``"package.module:Class"``, or the class. It is given those of ``pop_size`` and ``operators`` that its constructor
-        takes. One that is registered is known by its name.
+        takes. One that is registered is known by its name. An algorithm that is made already is taken as it is, as
+        `make_algorithm` does; in a file it is a table of its ``class`` and all arguments, objects within it likewise. A planner
+        means the same as its class with its arguments.
     preset : {"ahmed-deb-2013"}, optional
         In place of ``algorithm``: the planner of the paper, see `ahmed_deb_2013`, with its penalty of 1; it keeps the
         representation of a problem if that is one of the paper's, and takes "integer" otherwise.
@@ -85,14 +90,20 @@ class AlgorithmSpec:
         set_given(self, "max_seconds", check=values.real)
         set_given(self, "obstacles", check=lambda value, where: values.choice(value, OBSTACLES, where))
         check_problem_settings(self)
-        if self.algorithm is not None:
+        if isinstance(self.algorithm, Planner):
+            self._take_planner(self.algorithm)
+        elif isinstance(self.algorithm, Algorithm):
+            set_fields(self, algorithm=made.table_of(self.algorithm, ("algorithm",)))
+        elif isinstance(self.algorithm, Mapping):
+            set_fields(self, algorithm=made.checked(self.algorithm, ("algorithm",)))
+        elif self.algorithm is not None:
             set_fields(self, algorithm=_operators.read_algorithm(self.algorithm, ("algorithm",)))
         takes = self._takes()
         for key in ("pop_size", "smoothness", "operators", "parameters", "max_seconds", "max_labels"):
             value = getattr(self, key)
             given = value is not None and not (isinstance(value, str) and value == "default")
             if given and key not in takes:
-                owner = self.algorithm or "the preset"
+                owner = "an algorithm that is made already" if self.is_made else self.algorithm or "the preset"
                 raise StudyError(f"{owner} takes no {key}, only {' and '.join(takes) or 'a name'}", (key,))
         if "operators" in takes:
             set_fields(self, operators=_operators.operators(self.operators, ("operators",)))
@@ -106,6 +117,8 @@ class AlgorithmSpec:
         """Return the keys that say how the algorithm works."""
         if self.preset is not None:
             return ("pop_size",)
+        if self.is_made:
+            return ()
         planner = _operators.planner_of(self.algorithm)
         if planner is None and not own.is_path(self.algorithm):
             return ("pop_size", "smoothness", "operators", "parameters")
@@ -116,6 +129,21 @@ class AlgorithmSpec:
             *["operators"] * bool(operator_slots(cls)),
             "parameters",
         )
+
+    def _take_planner(self, planner: Planner) -> None:
+        """Read a planner that is made already as its class with arguments: it means the same runs."""
+        given = {key: value for key in ("pop_size", "operators", "parameters") if (value := getattr(self, key)) is not None}
+        for key, value in given.items():
+            if value != "default":
+                raise StudyError(f"an algorithm that is made already takes no {key}, only a name", (key,))
+        arguments = {key: value for key, value in made.table_of(planner, ("algorithm",)).items() if key != "class"}
+        set_fields(self, algorithm=_operators.read_algorithm(type(planner), ("algorithm",)))
+        if _operators.planner_of(self.algorithm) is not None:
+            for key in ("max_seconds", "max_labels", "pop_size"):
+                if key in arguments:
+                    value = arguments.pop(key)
+                    set_fields(self, **{key: float(value) if key == "max_seconds" else value})
+        set_fields(self, parameters=arguments)
 
     def _gather_budget(self) -> None:
         """Put budgets of a planner that is none of this package among its other arguments."""
@@ -149,7 +177,13 @@ class AlgorithmSpec:
     @property
     def label(self) -> str:
         """What tables call it."""
-        return self.name or self.preset or str(self.algorithm).rpartition(":")[2]
+        algorithm = self.algorithm["class"] if self.is_made else self.algorithm
+        return self.name or self.preset or str(algorithm).rpartition(":")[2]
+
+    @property
+    def is_made(self) -> bool:
+        """Whether it is an algorithm that is made already, and is taken as it is."""
+        return isinstance(self.algorithm, Mapping)
 
     @property
     def overrides(self) -> dict[str, Any]:

@@ -93,9 +93,14 @@ def algorithm_entry(path: str) -> dict[str, Any]:
     enough, and whether that is the truth which others are measured against.
     """
     given = own.read(path, ALGORITHM, ("algorithm",))
-    says = getattr(given.cls, "capability", given.cls)
-    facts = {flag: bool(getattr(says, flag, False)) for flag in ("deterministic", "reference")}
+    facts = flags_of(given.cls)
     if issubclass(given.cls, Planner):
         # Of others it is not said, as their keys were made without.
         facts["planner"] = True
     return own.entry(given, slots=operator_slots(given.cls), pop_size=takes_pop_size(given.cls), **facts)
+
+
+def flags_of(cls: type) -> dict[str, bool]:
+    """Return what an algorithm of one's own says of itself: whether it draws nothing, and whether it is the truth."""
+    says = getattr(cls, "capability", cls)
+    return {flag: bool(getattr(says, flag, False)) for flag in ("deterministic", "reference")}

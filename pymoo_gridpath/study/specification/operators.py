@@ -7,8 +7,6 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pymoo.core.algorithm import Algorithm
-
 from pymoo_gridpath.algorithms import Capability, find_algorithm
 from pymoo_gridpath.algorithms.known import class_of
 from pymoo_gridpath.errors import StudyError, nearest
@@ -31,14 +29,8 @@ def read_algorithm(value: Any, where: Where) -> str:
     Raises
     ------
     StudyError
-        As `algorithm_name`; if there is no such class, or it is an object, whose parts no file can hold.
+        As `algorithm_name`, or if there is no such class.
     """
-    if isinstance(value, Algorithm):
-        raise StudyError(
-            f"algorithm is an object of {type(value).__name__}, which holds more than its arguments; expected its class, and "
-            "the arguments as pop_size, operators and parameters",
-            where,
-        )
     if not isinstance(value, type) and not own.is_path(value):
         return algorithm_name(values.text(value, where), where)
     given = own.read(value, ALGORITHM, where)

@@ -22,6 +22,7 @@ from pymoo.core.variable import Variable
 
 from pymoo_gridpath.errors import GridPathError, StudyError, nearest
 from pymoo_gridpath.planners.signature import parameters_of
+from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.values import Where
 
@@ -29,6 +30,7 @@ PATH = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*:[^\W\d]\w*(?:\.[^\W\d]\w*)*")
 
 # Arguments that pymoo's operators inherit and that no file can hold.
 _INHERITED = ("name", "vtype", "repair", "func", "cmp_func")
+_ELSEWHERE = (*_INHERITED, "grid", "start", "goal")
 
 
 class Kind(NamedTuple):
@@ -72,7 +74,7 @@ def read(value: Any, kind: Kind, where: Where) -> Given:
             raise StudyError(f"{kind.word} has no class, expected such as {{ class = 'package.module:Class' }}", where)
         cls, name = _named(table.pop("class"), kind, (*where, "class"))
         return Given(cls, name, _arguments(cls, name, table, where))
-    if isinstance(value, kind.base) and not isinstance(value, type):
+    if isinstance(value, kind.base) and not isinstance(value, type | str):
         cls, name = _named(type(value), kind, where)
         return Given(cls, name, _arguments_of(value, kind, where))
     return Given(*_named(value, kind, where), {})
@@ -103,9 +105,15 @@ def shown(content: Any) -> str:
     """Return what a report calls something in canonical form."""
     if isinstance(content, str):
         return content
-    settings = ", ".join(f"{key}={value}" for key, value in content["arguments"].items())
+    settings = ", ".join(f"{key}={_shown(value)}" for key, value in content["arguments"].items())
     name = content["class"].rpartition(":")[2]
     return f"{name}({settings})" if settings else name
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, Mapping) and "class" in value:
+        return shown(value)
+    return "..." if isinstance(value, Mapping) and "array" in value else str(value)
 
 
 def check_entry(content: Any, word: str, where: Where, **facts: type) -> None:
@@ -272,16 +280,18 @@ def _arguments(cls: type, name: str, given: Mapping[str, Any], where: Where) -> 
 def _arguments_of(thing: Any, kind: Kind, where: Where) -> dict[str, Any]:
     """Return the arguments that make an object like the one that is given."""
     cls = type(thing)
-    held = {key: _held(thing, key) for key in parameters_of(cls) if key not in _INHERITED and hasattr(thing, key)}
-    needed = [item.name for item in inspect.signature(cls).parameters.values() if item.default is item.empty]
+    kept = {key: held(thing, key) for key in parameters_of(cls) if key not in _ELSEWHERE and hasattr(thing, key)}
+    needed = [item.name for item in inspect.signature(cls).parameters.values() if item.default is item.empty][
+        len(_leading(thing)) :
+    ]
     try:
-        found = {key: values.plain_json(held[key], where) for key in needed if key in held}
+        found = {key: values.plain_json(kept[key], where) for key in needed if key in kept}
         # What bases would set themselves is no argument to give.
-        plain = cls(**found)
-        for key, value in held.items():
-            if key not in found and value != _held(plain, key):
+        plain = cls(*_leading(thing), **found)
+        for key, value in kept.items():
+            if key not in found and value != held(plain, key):
                 found[key] = values.like(parameters_of(cls)[key], values.plain_json(value, where))
-        same = _alike(cls(**found), thing, 0)
+        same = alike(cls(*_leading(thing), **found), thing)
     except Exception:
         same = False
     if not same:
@@ -293,22 +303,40 @@ def _arguments_of(thing: Any, kind: Kind, where: Where) -> dict[str, Any]:
     return found
 
 
-def _held(thing: Any, key: str) -> Any:
+def held(thing: Any, key: str) -> Any:
     """Return what an object holds of an argument; pymoo's operators hold variables, in order to tune them."""
     value = getattr(thing, key)
     return value.get() if isinstance(value, Variable) else value
 
 
-def _alike(one: Any, other: Any, depth: int) -> bool:
+def alike(one: Any, other: Any, depth: int = 0) -> bool:
     """Whether two objects hold the same values."""
+    if one is other:
+        return True
+    if {type(one), type(other)} == {int, float}:
+        # As they are written down, 3 and 3.0 are the same.
+        return one == other
     if type(one) is not type(other) or depth > 8:
         return False
     if isinstance(one, np.ndarray):
         return one.dtype == other.dtype and np.array_equal(one, other)
     if isinstance(one, dict):
-        return one.keys() == other.keys() and all(_alike(one[key], other[key], depth + 1) for key in one)
+        return one.keys() == other.keys() and all(alike(one[key], other[key], depth + 1) for key in one)
     if isinstance(one, list | tuple):
-        return len(one) == len(other) and all(_alike(a, b, depth + 1) for a, b in zip(one, other, strict=True))
+        return len(one) == len(other) and all(alike(a, b, depth + 1) for a, b in zip(one, other, strict=True))
     if hasattr(one, "__dict__") and not isinstance(one, type) and not inspect.isroutine(one):
-        return _alike(vars(one), vars(other), depth + 1)
-    return one is other or bool(one == other)
+        return alike(_kept(one), _kept(other), depth + 1)
+    return bool(one == other)
+
+
+def _kept(thing: Any) -> dict[str, Any]:
+    """Return the attributes of an object but those that follow from others."""
+    cls = type(thing)
+    return {
+        key: value for key, value in vars(thing).items() if not isinstance(getattr(cls, key, None), functools.cached_property)
+    }
+
+
+def _leading(thing: Any) -> tuple[Any, ...]:
+    """Return what an object is made for, which the problems of a study say anew."""
+    return (thing.grid, thing.start, thing.goal) if isinstance(thing, Representation) else ()

@@ -95,7 +95,8 @@ class ProblemSpec:
         How the map is read, see `pymoo_gridpath.maps.load_map`.
     objectives, representation, obstacles, penalty, potential_limit, axis : optional
         See `GridPathProblem`. An objective or the representation may be of your own: the path of its class,
-        ``"package.module:Class"``, a table of ``class`` and its arguments, the class, or an objective itself.
+        ``"package.module:Class"``, a table of ``class`` and its arguments, the class, or an object; a representation is made
+        anew for each grid and query.
 
     Raises
     ------
