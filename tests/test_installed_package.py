@@ -161,7 +161,9 @@ def test_python_knows_them(run):
 
 
 @pytest.mark.parametrize(
-    "given", [("greedy", "--pop-size", "8", "--generations", "2"), ("copier",)], ids=["algorithm", "planner"]
+    "given",
+    [("greedy", "--operators", "mutation=shake", "--pop-size", "8", "--generations", "2"), ("copier",)],
+    ids=["algorithm and operator", "planner"],
 )
 def test_the_command_line_knows_them(run, tmp_path, given):
     problem = ("--start", "0,0", "--goal", "8,5", "--objectives", "length,hilly", "--representation", "coding")

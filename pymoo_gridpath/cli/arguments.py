@@ -67,6 +67,14 @@ def cell(text: str) -> tuple[int, int]:
     return x, y
 
 
+def operators(text: str) -> dict[str, str]:
+    """Return the names of operators by what they are for that a text such as "crossover=A,mutation=B" says."""
+    pairs = [part.split("=") for part in text.split(",")]
+    if not all(len(pair) == 2 and all(pair) for pair in pairs) or len(dict(pairs)) < len(pairs):
+        raise argparse.ArgumentTypeError(f"{text!r} names no operators, expected some such as crossover=A,mutation=B")
+    return dict(pairs)
+
+
 def folder(text: str) -> Path:
     """Return the path of a folder; an empty one, such as an unset variable of the shell gives, is none."""
     if not text:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pymoo_gridpath.cli.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, cell, folder, natural, positive
+from pymoo_gridpath.cli.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, cell, folder, natural, operators, positive
 from pymoo_gridpath.cli.maps import add_reading, load, unknown_of
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
@@ -60,6 +60,12 @@ def add_plan_command(commands) -> None:
         choices=("auto", "x", "y"),
         default="auto",
         help="axis along which paths advance that never turn back (default: auto)",
+    )
+    search.add_argument(
+        "--operators",
+        type=operators,
+        metavar="KIND=NAME,...",
+        help="sampling, crossover, mutation, repair or others, by name, such as crossover=SpliceCrossover",
     )
     search.add_argument("--pop-size", type=positive, metavar="N", help="population size (default: 200)")
     search.add_argument("--generations", type=positive, metavar="N", help="generations of a run (default: 200)")
@@ -175,6 +181,7 @@ def _settle_options(spec, name: str, arguments) -> None:
     is_planner = isinstance(spec, type)
     takes = {
         "pop_size": spec.takes_pop_size,
+        "operators": spec.takes_operators or not is_planner,
         "generations": not is_planner,
         "runs": not spec.deterministic,
         "max_seconds": is_planner and "max_seconds" in spec.parameters(),
@@ -191,6 +198,8 @@ def _algorithm(name: str, spec, problem, arguments, **more):
     from pymoo_gridpath.algorithms import make_algorithm
 
     given: dict[str, Any] = {"pop_size": arguments.pop_size or 200} if spec.takes_pop_size else {}
+    if arguments.operators is not None:
+        given["operators"] = arguments.operators
     if isinstance(spec, type):
         more = {"max_seconds": arguments.max_seconds, **more}
         given |= {key: value for key, value in more.items() if key in spec.parameters()}

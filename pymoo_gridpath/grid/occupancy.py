@@ -357,7 +357,7 @@ class OccupancyGrid(Cells):
         return self if disc.sum() <= 1 else self.replace(occupied=grown_by(self._occupied, disc, self._free_box))
 
     def radius_in_cells(self, radius: float) -> float:
-        """Return the radius of a robot, given in metres, in cells.
+        """Return the radius of a robot, given in metres, in cells; at most the width and height together, which cover all.
 
         Raises
         ------
@@ -365,7 +365,7 @@ class OccupancyGrid(Cells):
             If the radius is negative or not finite.
         """
         radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
-        return radius / self._resolution
+        return min(radius / self._resolution, float(sum(self.shape)))
 
     def shortest_lengths(self, start: Sequence[int], limit: float = math.inf) -> np.ndarray:
         """Return the length in cells of the shortest path from ``start`` to every cell.

@@ -148,6 +148,29 @@ def test_plan_takes_other_algorithms_and_settings(tmp_path, free_map, algorithm)
     assert "of 2 runs found a legal path" in done.stdout
 
 
+def test_plan_takes_operators_by_name(tmp_path, free_map):
+    query = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "-o", tmp_path / "out"]
+    done = run(*query, "--operators", "sampling=ReachableSampling,mutation=PathMutation")
+    assert done.returncode == 0, done.stderr
+    document = json.loads((tmp_path / "out" / "paths.json").read_text())
+    assert document["settings"]["runs"][0]["operators"]["sampling"]["name"] == "ReachableSampling"
+    for given, message in (
+        ("mutation=PathMutatoin", "there is no mutation 'PathMutatoin'; did you mean 'PathMutation'?"),
+        ("mutations=PathMutation", "did you mean 'mutation'?"),
+    ):
+        done = run(*query, "--operators", given)
+        assert done.returncode == 2 and message in done.stderr, done.stderr
+    done = run(*query[:6], "--algorithm", "exact", "--operators", "mutation=PathMutation")
+    assert done.returncode == 2 and "--operators is not for --algorithm exact" in done.stderr
+
+
+@pytest.mark.parametrize("given", ["", "mutation", "mutation=", "mutation=A,mutation=B", "a=b=c"])
+def test_texts_that_name_no_operators_are_refused(free_map, given, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["plan", str(free_map), "--operators", given])
+    assert ended.value.code == 2 and f"{given!r} names no operators" in capsys.readouterr().err
+
+
 def test_plan_with_one_objective(tmp_path, free_map):
     done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", "--objectives", "length", *FAST, "-o", tmp_path / "out")
     assert done.returncode == 0, done.stderr

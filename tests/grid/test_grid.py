@@ -174,7 +174,8 @@ def test_both_ways_to_grow_obstacles_agree(radius):
 
 
 def test_a_radius_in_cells():
-    assert OccupancyGrid([[0, 0]], resolution=0.25).radius_in_cells(1.5) == 6.0
+    assert OccupancyGrid([[0] * 9], resolution=0.25).radius_in_cells(1.5) == 6.0
+    assert OccupancyGrid([[0] * 9], resolution=1e-300).radius_in_cells(1e300) == 10.0, "as much as covers all"
     with pytest.raises(GridError, match="robot radius is -1, expected"):
         OccupancyGrid([[0, 0]]).radius_in_cells(-1)
 

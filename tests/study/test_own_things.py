@@ -307,7 +307,11 @@ def local_class():
         ({}, {"objectives": ["length", {"class": "hikers:Hilly", "slop": 1}]}, "did you mean 'slope'"),
         ({}, {"objectives": ["length", {"slope": 1}]}, "objective has no class"),
         ({}, {"representation": "hikers:Hilly"}, "expected a class derived from Representation"),
-        ({"operators": {"crossover": "suffle"}}, {}, "there is no crossover 'suffle'; expected one of DiscreteSBX, "),
+        (
+            {"operators": {"crossover": "suffle"}},
+            {},
+            "there is no crossover 'suffle'; expected one of SharedCellCrossover, DiscreteSBX, ",
+        ),
         ({"operators": {"crossover": "DiscretSBX"}}, {}, "there is no crossover 'DiscretSBX'; did you mean 'DiscreteSBX'?"),
         ({"operators": {"crossover": "hikers:Mine"}}, {}, "expected a class derived from Crossover"),
         ({"operators": {"crossover": {"class": "hikers:Sbx", "eta": -3}}}, {}, "cannot be made so"),
