@@ -6,10 +6,11 @@ either: what they hide would be taken for real.
 
 from __future__ import annotations
 
+import inspect
 import math
 import os
 import reprlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from decimal import Decimal
 from numbers import Integral, Real
 from typing import Any, TypeVar
@@ -209,11 +210,26 @@ def instance(
     return value
 
 
-def function(name: str, value: Any, expected: str, optional: bool = False, error: type[GridPathError] = GridPathError) -> Any:
-    """Return what can be called, and is no class."""
-    if (not callable(value) or isinstance(value, type)) and not (optional and value is None):
-        raise error(f"{name} is {shown(value)}, expected {expected}")
+def function(name: str, value: Any, expected: str, n_arguments: int, optional: bool = False) -> Any:
+    """Return what can be called with so many arguments, and is no class."""
+    if optional and value is None:
+        return value
+    if not callable(value) or isinstance(value, type) or not _takes(value, n_arguments):
+        raise GridPathError(f"{name} is {shown(value)}, expected {expected}")
     return value
+
+
+def _takes(function: Callable, n_arguments: int) -> bool:
+    """Whether a function can be called with so many arguments, as far as its signature says."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # some that are compiled have none
+        return True
+    try:
+        signature.bind(*range(n_arguments))
+    except TypeError:
+        return False
+    return True
 
 
 def file_path(name: str, value: Any, error: type[GridPathError] = GridPathError) -> str:

@@ -68,7 +68,7 @@ def minimize_runs(
     n_runs = checks.whole("n_runs", n_runs, 1, _MOST_RUNS)
     seed = checks.whole("seed", seed, 0)
     checks.instance("callback", callback, Callback, optional=True)
-    checks.function("observe", observe, "a function of the number of the run and the algorithm", optional=True)
+    checks.function("observe", observe, "a function of the number of the run and the algorithm", 2, optional=True)
     results = []
     for k in range(n_runs):
         run = copy.deepcopy(algorithm)

@@ -90,7 +90,7 @@ class Budget:
             # A whole number larger than a float holds is a budget that is never used up.
             if value is not None and not (isinstance(value, int) and not isinstance(value, bool) and value > 2**63):
                 checks.number(name, value, 0.0, infinite=True, expected="a number, zero or more")
-        checks.function("watch", self.watch, "a function of one argument, the Meter", optional=True)
+        checks.function("watch", self.watch, "a function of one argument, the Meter", 1, optional=True)
 
 
 class Meter:

@@ -105,9 +105,9 @@ def run_study(
         plan = plan_study(plan)
     checks.instance("plan", plan, Plan, " or a Study")
     if executor is not None:
-        checks.function("executor", getattr(executor, "submit", executor), "an Executor of concurrent.futures")
+        checks.function("executor", getattr(executor, "submit", executor), "an Executor of concurrent.futures", 2)
     retry_failed = checks.flag("retry_failed", retry_failed)
-    checks.function("tell", tell, "a function of a sentence", optional=True)
+    checks.function("tell", tell, "a function of a sentence", 1, optional=True)
     store = Store(folder)
     messages: list[str] = []
 
