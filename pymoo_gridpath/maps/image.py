@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageFile, UnidentifiedImageError
 
-from pymoo_gridpath.errors import MapError, visible
+from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError, MapError, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps._declared import CountedReader, Tags, check_before, check_exif, check_jpeg, check_png, nodata_of
-from pymoo_gridpath.maps._files import MAX_CELLS, blocks, check_size, check_unknown, make_grid, require_file, shorten, warn
+from pymoo_gridpath.maps._files import MAX_CELLS, blocks, check_size, check_unknown, make_grid, require_file, warn
 from pymoo_gridpath.maps._ros_yaml import yaml_of_image
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
@@ -150,10 +151,12 @@ def read_image(
         If the YAML file of a ROS map lies beside the image and names it.
     """
     check_unknown(path, unknown)
-    if not _is_fraction(threshold):
-        raise MapError(path, f"the option threshold is {shorten(threshold)}, expected a number from 0 to 1")
+    try:
+        threshold = checks.number("the option threshold", threshold, 0.0, 1.0, expected="a number from 0 to 1")
+    except GridPathError as error:
+        raise MapError(path, str(error)) from None
     pixels = read_pixels(path)
-    occupied = pixels.below(float(threshold), unknown == "occupied")
+    occupied = pixels.below(threshold, unknown == "occupied")
     unseen = np.zeros_like(occupied) if pixels.alpha is None else pixels.alpha == 0
     if (described := yaml_of_image(path)) is not None:
         warn(
@@ -302,10 +305,3 @@ def _turned(pixels: Pixels, turn: Callable[[np.ndarray], np.ndarray]) -> Pixels:
 def _first_from(threshold: float, white: int) -> int:
     """Return the first whole number whose quotient by ``white`` is not below a threshold."""
     return bisect.bisect_left(range(white + 1), True, key=lambda value: value / white >= threshold)
-
-
-def _is_fraction(value) -> bool:
-    try:
-        return 0 <= float(value) <= 1
-    except (TypeError, ValueError):
-        return False

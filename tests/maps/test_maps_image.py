@@ -179,7 +179,15 @@ def test_the_size_is_checked_before_the_pixels(write, refused, png, monkeypatch)
 
 
 @pytest.mark.parametrize(
-    ("option", "value"), [("threshold", 1.5), ("threshold", "dark"), ("threshold", float("nan")), ("unknown", "grey")]
+    ("option", "value"),
+    [
+        ("threshold", 1.5),
+        ("threshold", 10**400),
+        ("threshold", "0.5"),
+        ("threshold", "dark"),
+        ("threshold", float("nan")),
+        ("unknown", "grey"),
+    ],
 )
 def test_bad_options_are_refused(write, refused, option, value):
     path = write("m.pgm", b"P5\n1 1\n255\n\0")
