@@ -182,7 +182,6 @@ def test_the_size_is_checked_before_the_pixels(write, refused, png, monkeypatch)
     ("option", "value"),
     [
         ("threshold", 1.5),
-        ("threshold", 10**400),
         ("threshold", "0.5"),
         ("threshold", "dark"),
         ("threshold", float("nan")),
@@ -192,6 +191,10 @@ def test_the_size_is_checked_before_the_pixels(write, refused, png, monkeypatch)
 def test_bad_options_are_refused(write, refused, option, value):
     path = write("m.pgm", b"P5\n1 1\n255\n\0")
     refused(read_image, path, None, option, value, **{option: value})
+
+
+def test_a_threshold_of_any_size_is_refused(write, refused):
+    refused(read_image, write("m.pgm", b"P5\n1 1\n255\n\0"), None, "threshold", "expected", threshold=10**400)
 
 
 # -- what is declared and what is there --------------------------------------------------------------------------------
