@@ -179,7 +179,8 @@ class MonotoneFrame:
     def _flanks_at(self, row: np.ndarray, step: np.ndarray) -> np.ndarray:
         n = self.n_columns - 1
         index = row + np.arange(n) * self.n_rows
-        index += (step + np.int64(1)) * (n * self.n_rows)
+        # Before numpy 2, a sum of small whole numbers and a number stays small.
+        index += (step.astype(np.int64) + 1) * (n * self.n_rows)
         return self.flanks.ravel().take(index)
 
     def admits_path(self) -> bool:

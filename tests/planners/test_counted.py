@@ -88,7 +88,8 @@ def steps_graph(grid, straight_only=False):
             if not straight_only or m % 2 == 0:
                 rows.append(y * grid.width + x)
                 columns.append(v * grid.width + u)
-    return sparse.csr_array((np.ones(len(rows)), (rows, columns)), shape=(grid.occupied.size,) * 2)
+    ends = np.array([rows, columns], dtype=np.int32)  # what csgraph takes before scipy 1.15
+    return sparse.csr_array((np.ones(len(rows)), tuple(ends)), shape=(grid.occupied.size,) * 2)
 
 
 def test_paths_are_as_short_as_promised():

@@ -47,6 +47,19 @@ def test_measures_equal_those_of_the_cells(query, name):
         assert paths.n_straight[i] + paths.n_diagonal[i] == len(cells) - 1
 
 
+@pytest.mark.parametrize("size", [11, 12, 60, 200])
+@pytest.mark.parametrize("corner_cutting", [False, True])
+def test_crossed_cells_are_counted_on_grids_of_any_size(size, corner_cutting):
+    rng = np.random.default_rng(size)
+    occupied = rng.random((size, size)) < 0.4
+    occupied[0] = occupied[:, -1] = False
+    grid = OccupancyGrid(occupied, corner_cutting=corner_cutting)
+    coding = make_representation("absolute", grid, (0, 0), (size - 1, size - 1), "auto")
+    paths = coding.decode(random_genes(coding, rng, 5))
+    expected = [reference.interfering_cells(paths.cells(i).tolist(), grid) for i in range(len(paths))]
+    assert paths.interfering_cells.tolist() == expected
+
+
 @given(queries(), st.sampled_from(NAMES))
 def test_encode_is_the_inverse_of_decode_on_repaired_genes(query, name):
     grid, start, goal, axis, rng = query
