@@ -112,10 +112,11 @@ class WeightedPaths(Planner):
         head = tail + moves.offsets[heading]
         costs = np.stack([self._costs(one, problem.grid, heading, moves.to_grid(head)) for one in problem.objectives])
         costs /= costs.mean(axis=1, keepdims=True) + 1e-9
+        ends = np.array([tail, head], dtype=np.int32)  # what scipy before 1.15 takes
         start, goal = moves.index(problem.start), moves.index(problem.goal)
         found = {}
         for weights in reference_directions(problem.n_obj, self.n_weights):
-            steps = sparse.csr_array((weights @ costs, (tail, head)), shape=2 * (moves.n_cells,))
+            steps = sparse.csr_array((weights @ costs, tuple(ends)), shape=2 * (moves.n_cells,))
             _, before = sparse.csgraph.dijkstra(steps, indices=start, return_predecessors=True)
             path = [goal]
             while path[-1] != start:
