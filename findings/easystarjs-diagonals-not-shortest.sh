@@ -9,7 +9,7 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install --silent --no-audit --no-fund --prefix "$tmp" easystarjs@0.4.4
+npm install easystarjs@0.4.4 --silent --no-audit --no-fund --prefix "$tmp"
 node - <<'JS'
 const assert = require("assert");
 const EasyStar = require("easystarjs");

@@ -9,7 +9,7 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install --silent --no-audit --no-fund --prefix "$tmp" ngraph.path@1.6.1 ngraph.graph@20.1.2
+npm install ngraph.path@1.6.1 ngraph.graph@20.1.2 --silent --no-audit --no-fund --prefix "$tmp"
 node - <<'JS'
 const assert = require("assert");
 const createGraph = require("ngraph.graph");

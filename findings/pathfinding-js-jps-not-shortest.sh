@@ -10,7 +10,7 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install --silent --no-audit --no-fund --prefix "$tmp" pathfinding@0.4.18
+npm install pathfinding@0.4.18 --silent --no-audit --no-fund --prefix "$tmp"
 node - <<'JS'
 const assert = require("assert");
 const PF = require("pathfinding");

@@ -9,7 +9,7 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install --silent --no-audit --no-fund --prefix "$tmp" rot-js@2.2.1
+npm install rot-js@2.2.1 --silent --no-audit --no-fund --prefix "$tmp"
 cat > check.mjs <<'JS'
 import assert from "node:assert";
 import { Path } from "rot-js";
