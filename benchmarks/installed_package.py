@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 ALGORITHM = '''
 
-from pymoo.algorithms.moo.nsga2 import NSGA2  # noqa: E402
+from pymoo.algorithms.moo.nsga2 import NSGA2
 
 
 @register
@@ -36,9 +36,9 @@ class Patient(NSGA2):
 ENTRY_POINT = '\n[project.entry-points."pymoo_gridpath.algorithms"]\nPatient = "trails:Patient"\n'
 SUITE = """
 
-from trails import Patient  # noqa: E402
+from trails import Patient
 
-from pymoo_gridpath.testing import AlgorithmSuite  # noqa: E402
+from pymoo_gridpath.testing import AlgorithmSuite
 
 
 class TestPatient(AlgorithmSuite):
