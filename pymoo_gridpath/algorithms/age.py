@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
-from pymoo.algorithms.moo.age import AGEMOEASurvival
-from pymoo.algorithms.moo.age2 import AGEMOEA2Survival
+from pymoo.algorithms.moo.age import AGEMOEASurvival, find_corner_solutions, point_2_line_distance
+from pymoo.algorithms.moo.age2 import AGEMOEA2Survival, project_on_manifold
+
+# pymoo compiles these anew in every process, for five seconds; numba keeps them where it has a folder to do so.
+for _compiled in (
+    find_corner_solutions,
+    point_2_line_distance,
+    project_on_manifold,
+    AGEMOEASurvival.minkowski_distances,
+    AGEMOEA2Survival.pairwise_distances,
+):
+    with suppress(RuntimeError):
+        _compiled.enable_caching()  # pyright: ignore[reportFunctionMemberAccess]
 
 #: Decimals to which pymoo rounds a front before it shifts it to the ideal point, which it does not round.
 _DECIMALS = 12

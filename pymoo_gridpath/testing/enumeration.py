@@ -63,6 +63,13 @@ def legal_steps(grid: OccupancyGrid, cell: Cell, headings: Iterable[int] = range
             yield m, (x + dx, y + dy)
 
 
+def steps_of(grid: OccupancyGrid, headings: Iterable[int] = range(8)) -> dict[Cell, list[tuple[int, Cell]]]:
+    """Return the heading and the end of each legal step from every free cell."""
+    headings = list(headings)
+    free = [(x, y) for y, x in np.ndindex(grid.shape) if grid.is_free((x, y))]
+    return {cell: list(legal_steps(grid, cell, headings)) for cell in free}
+
+
 def turn_between(before: int | None, after: int) -> int:
     """Return the turn between two headings in units of 45 degrees; nothing is before the first step."""
     apart = 0 if before is None else abs(after - before)
@@ -71,18 +78,23 @@ def turn_between(before: int | None, after: int) -> int:
 
 def enumerate_paths(grid: OccupancyGrid, start: Cell, goal: Cell, headings: Iterable[int] = range(8)) -> list[EnumeratedPath]:
     """Return every legal path without a loop. Grids of more than 14 free cells take long."""
-    found, headings = [], list(headings)
-    steps = {(x, y): list(legal_steps(grid, (x, y), headings)) for y, x in np.ndindex(grid.shape) if grid.is_free((x, y))}
+    steps = steps_of(grid, headings)
+    turns = {before: [turn_between(before, m) for m in range(8)] for before in (None, *range(8))}
+    found: list[EnumeratedPath] = []
+    cells, visited = [start], {start}
 
-    def walk(cells, straight, diagonal, turn, heading):
+    def walk(straight, diagonal, turn, heading):
         if cells[-1] == goal:
             found.append(EnumeratedPath(tuple(cells), straight, diagonal, turn))
             return
         for m, after in steps[cells[-1]]:
-            if after not in cells:
-                walk([*cells, after], straight + 1 - m % 2, diagonal + m % 2, turn + turn_between(heading, m), m)
+            if after not in visited:
+                cells.append(after)
+                visited.add(after)
+                walk(straight + 1 - m % 2, diagonal + m % 2, turn + turns[heading][m], m)
+                visited.remove(cells.pop())
 
-    walk([start], 0, 0, 0, None)
+    walk(0, 0, 0, None)
     return found
 
 

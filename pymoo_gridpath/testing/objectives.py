@@ -150,6 +150,13 @@ def _paths(grid: OccupancyGrid) -> list[tuple[Cell, ...]]:
     return [path.cells for path in enumerate_paths(grid, (0, 0), (grid.width - 1, grid.height - 1))]
 
 
+@functools.lru_cache(maxsize=1 << 15)
+def _headings_of(cells: tuple[Cell, ...]) -> tuple[list[int], int]:
+    """Return the headings of a path's steps, and its turn in units of 45 degrees."""
+    headings = [_HEADINGS[b[0] - a[0], b[1] - a[1]] for a, b in itertools.pairwise(cells)]
+    return headings, sum(itertools.starmap(turn_between, itertools.pairwise(headings)))
+
+
 def slow_scores(objective: Objective, grid: OccupancyGrid, paths: Sequence[tuple[Cell, ...]]) -> list[float]:
     """Return what legal paths cost by what an objective says, one cell and one step after another."""
     field, moves = objective.field(grid), objective.moves(grid)
@@ -161,10 +168,10 @@ def slow_scores(objective: Objective, grid: OccupancyGrid, paths: Sequence[tuple
         visited = [] if costs is None else [costs[y][x] for x, y in cells]
         if objective.combine != "sum":
             return min(visited) if objective.combine == "least" else max(visited)
-        headings = [_HEADINGS[b[0] - a[0], b[1] - a[1]] for a, b in itertools.pairwise(cells)]
+        headings, turn = _headings_of(cells)
         for heading, (x, y) in zip(headings, cells[1:], strict=True):
             visited.append(steps[heading][y][x] if by_cell else steps[heading % 2])
-        return sum(visited) + objective.turn_cost * sum(itertools.starmap(turn_between, itertools.pairwise(headings)))
+        return sum(visited) + objective.turn_cost * turn
 
     return [score(cells) for cells in paths]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from fractions import Fraction
 
 import numpy as np
@@ -14,7 +15,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.representations import CellSequence
-from pymoo_gridpath.testing.enumeration import STEPS, enumerate_paths, legal_steps
+from pymoo_gridpath.testing.enumeration import STEPS, enumerate_paths, steps_of, turn_between
 
 N_GRIDS = 500
 
@@ -118,7 +119,7 @@ def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
 
 def test_the_front_of_rows_that_are_too_short_equals_enumeration(solvable_seeds):
     n_cut = dict.fromkeys((1, 2, 3), 0)
-    for seed in solvable_seeds[::2]:
+    for seed in solvable_seeds[::3]:
         grid, start, goal, representation = random_case(seed)
         if representation != "cells":
             continue
@@ -142,7 +143,7 @@ def test_the_front_of_rows_that_are_too_short_equals_enumeration(solvable_seeds)
                 if "turn" not in problem.objective_names:
                     assert_best(found.F, coding.to_sequences(found.X).lengths, out["turn"], short, problem.objective_names)
                 n_cut[problem.n_obj] += "with at most" in found.message
-    assert n_cut[2] > 50 and n_cut[3] > 50
+    assert n_cut[2] > 30 and n_cut[3] > 30
 
 
 def magnitudes(random_state, shape):
@@ -168,9 +169,13 @@ def test_costs_of_any_size_have_every_point_of_the_enumeration(solvable_seeds, p
         wide, other = (Cost(name, magnitudes(random_state, case[0].shape)) for name in ("wide", "other"))
         problem = make_problem(case, ("length",))
         paths = enumerate_paths(problem.grid, problem.start, problem.goal, headings_of(problem))
-        exact = {cost.name: [[Fraction(value) for value in row] for row in cost.values] for cost in (wide, other)}
+        # Whole multiples of the smallest of all doubles: sums of these lose nothing.
+        exact = {
+            cost.name: [[int(Fraction(value) * 2**1074) for value in row] for row in cost.values] for cost in (wide, other)
+        }
         measures = scores(paths, {}) | {
-            name: [sum(field[y][x] for x, y in cells) for cells, *_ in paths] for name, field in exact.items()
+            name: [float(Fraction(sum(field[y][x] for x, y in cells), 2**1074)) for cells, *_ in paths]
+            for name, field in exact.items()
         }
         for objectives in (("length", wide), (wide, "turn"), (wide, other), ("length", other, "turn"), (wide, "length", other)):
             problem = make_problem(case, objectives)
@@ -194,33 +199,37 @@ def test_costs_of_any_size_have_every_point_of_the_enumeration(solvable_seeds, p
 def label_correction(grid, start, goal, headings, fields, names):
     """Return the front of some measures, by name, by keeping every non-dominated label, in plain Python."""
 
-    def measures_of(label):
-        straight, diagonal, turn, *costs = label
+    def measures_of(straight, diagonal, turn, costs):
         values = {"cells": 1 + straight + diagonal, "length": straight + math.sqrt(2) * diagonal, "turn": 45.0 * turn}
-        return [(values | dict(zip(fields, costs, strict=True)))[name] for name in names]
+        return tuple((values | dict(zip(fields, costs, strict=True)))[name] for name in names)
 
     def no_worse(a, b):
-        return all(x <= y + 1e-9 for x, y in zip(measures_of(a), measures_of(b), strict=True))
+        return all(x <= y + 1e-9 for x, y in zip(a[0], b[0], strict=True))
 
-    first = (0, 0, 0, *(round(field[start[1], start[0]]) for field in fields.values()))
+    rounded = [np.rint(field).astype(int).tolist() for field in fields.values()]
+    steps = steps_of(grid, headings)
+    start, goal = tuple(start), tuple(goal)
+    counts = (0, 0, 0, tuple(field[start[1]][start[0]] for field in rounded))
+    # Each label: what it scores, and the counts that this follows from.
+    first = (measures_of(*counts), counts)
     labels = {(start, None): {first}}
-    queue = [(start, None, first)]
+    queue = deque([(start, None, first)])
     while queue:
-        cell, heading, label = queue.pop(0)
+        cell, heading, label = queue.popleft()
         if label not in labels[cell, heading] or cell == goal:
             continue
-        for m, (x, y) in legal_steps(grid, cell, headings):
-            apart = 0 if heading is None else abs(m - heading)
-            straight, diagonal, turn, *costs = label
-            costs = (cost + round(field[y, x]) for cost, field in zip(costs, fields.values(), strict=True))
-            new = (straight + 1 - m % 2, diagonal + m % 2, turn + min(apart, 8 - apart), *costs)
+        straight, diagonal, turn, costs = label[1]
+        for m, (x, y) in steps[cell]:
+            sums = tuple(cost + field[y][x] for cost, field in zip(costs, rounded, strict=True))
+            counts = (straight + 1 - m % 2, diagonal + m % 2, turn + turn_between(heading, m), sums)
+            new = (measures_of(*counts), counts)
             mine = labels.setdefault(((x, y), m), set())
             if not any(no_worse(old, new) for old in mine):
                 mine -= {old for old in mine if no_worse(new, old)}
                 mine.add(new)
                 queue.append(((x, y), m, new))
     ends = set().union(*(mine for (cell, _), mine in labels.items() if cell == goal))
-    return dict(zip(names, zip(*map(measures_of, ends), strict=True), strict=True))
+    return dict(zip(names, zip(*(scored for scored, _ in ends), strict=True), strict=True))
 
 
 @pytest.mark.parametrize("seed", range(6))
