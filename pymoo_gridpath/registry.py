@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import warnings
 from collections.abc import Callable, Iterator
@@ -126,6 +127,12 @@ class Registry(Generic[T]):
     def registered(self) -> dict[str, T]:
         """Return by name what is registered already; no entry point is loaded for it."""
         return {name: self._known[key] for key, name in self._names.items()}
+
+    def name_of(self, thing: type) -> str | None:
+        """Return the name that a class is known by; None if it is not. No entry point is loaded for it."""
+        own = (name for name, known in self.registered().items() if known is thing)
+        others = (point.name for point in self._installed.values() if point.value == f"{thing.__module__}:{thing.__qualname__}")
+        return next(itertools.chain(own, others), None)
 
     def items(self) -> Iterator[tuple[str, T]]:
         """Yield the names with their classes; entry points that cannot be loaded are left out, with a warning."""

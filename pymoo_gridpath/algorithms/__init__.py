@@ -10,7 +10,7 @@ from pymoo_gridpath.algorithms.paper import Setup, ahmed_deb_2013
 from pymoo_gridpath.algorithms.runs import minimize_runs
 from pymoo_gridpath.algorithms.spea2 import StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.algorithms.termination import FirstLegalPath
-from pymoo_gridpath.algorithms.variable_length import PRINTED_RULES, variable_length_ga
+from pymoo_gridpath.algorithms.variable_length import PRINTED_RULES, VariableLengthGA, variable_length_ga
 from pymoo_gridpath.planners import (
     AStar,
     BestFirst,
@@ -52,6 +52,7 @@ __all__ = [
     "SmoothMOEAD",
     "StrengthAndSmoothness",
     "StrengthTournament",
+    "VariableLengthGA",
     "Waypoints",
     "ahmed_deb_2013",
     "capability_table",

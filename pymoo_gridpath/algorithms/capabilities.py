@@ -59,6 +59,8 @@ class Capability:
         Its result is the truth that others are measured against.
     takes_pop_size : bool
         `make_algorithm` takes a population size for it.
+    takes_generations : bool
+        It goes on for as many generations as it is given.
     cls : type or None
         The class, of an algorithm that is none of pymoo's; None: that of ``path``.
     """
@@ -85,6 +87,7 @@ class Capability:
     deterministic: bool = False
     reference: bool = False
     takes_pop_size: bool = True
+    takes_generations: bool = True
     cls: type | None = None
 
     @property

@@ -27,7 +27,7 @@ _OWN = {key_of(row.name): row for row in CAPABILITIES.values()}
 def find_algorithm(name: str | type[Algorithm], n_obj: int | None = None) -> Capability | type[Planner]:
     """Return what an algorithm or planner can do: its row of the capability table, or the planner's class.
 
-    Both have ``name``, ``deterministic``, ``reference``, ``takes_operators`` and ``takes_pop_size``.
+    Both have ``name``, ``deterministic``, ``reference``, ``takes_operators``, ``takes_pop_size`` and ``takes_generations``.
 
     Parameters
     ----------
@@ -68,6 +68,11 @@ def find_algorithm(name: str | type[Algorithm], n_obj: int | None = None) -> Cap
         if key == key_of(planner.__name__):
             return planner
     raise _unknown(name, key, n_obj)
+
+
+def registered_name(cls: type[Algorithm]) -> str | None:
+    """Return the name that an algorithm or planner is registered by; None if it is not."""
+    return PLANNERS.name_of(cls) or ALGORITHMS.name_of(cls)
 
 
 def _unknown(name: str, key: str, n_obj: int | None) -> CapabilityError:

@@ -5,18 +5,24 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Any
 
+import numpy as np
 from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.core.termination import Termination
 from pymoo.termination.max_gen import MaximumGenerationTermination
+from pymoo.util.optimum import filter_optimum
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.algorithms.capabilities import Capability
 from pymoo_gridpath.algorithms.factory import make_algorithm
 from pymoo_gridpath.algorithms.paper import Setup
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Length, Objective
-from pymoo_gridpath.operators import cell_operators
-from pymoo_gridpath.operators.sets import PRINTED, printed_rules
+from pymoo_gridpath.operators.cells import cells_of
+from pymoo_gridpath.operators.sets import PRINTED, printed_operators, printed_rules
+from pymoo_gridpath.planners import PathOutput
 from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.problems.members import are_legal
+from pymoo_gridpath.registry import ALGORITHMS
 from pymoo_gridpath.representations import CellSequence
 
 #: The rules of the paper that `variable_length_ga` can take as they are printed.
@@ -33,15 +39,72 @@ class PrintedLength(Objective):
         return 1.0, 0.414
 
 
+@ALGORITHMS.register
 class VariableLengthGA(GA):
-    """pymoo's genetic algorithm, whose Result says whether a legal path was found."""
+    """The variable-length genetic algorithm: pymoo's, with operators of its own, whose Result holds legal paths or none.
+
+    "variable_length_ga" by name, for problems of one objective with ``representation="cells"``; `variable_length_ga` makes
+    that of the paper. ``result.success`` and ``result.message`` say whether a legal path was found.
+
+    Parameters
+    ----------
+    pop_size : int, default 50
+    printed : collection of {"start", "roulette", "variation"}, default ()
+        Which rules to take as they are printed, see `variable_length_ga`.
+    output, evaluator, callback, termination, seed : optional
+        As of all algorithms of pymoo.
+
+    Raises
+    ------
+    GridPathError
+        If an argument is of another kind or out of its range.
+    CapabilityError
+        When the run begins, if the problem has another representation.
+    """
+
+    name = "variable_length_ga"
+    capability = Capability(
+        name, __name__, min_objectives=1, max_objectives=1, takes_operators=False, repair=False, unpacks=False
+    )
+
+    # All of its arguments: what makes the children is its own.
+    def __init__(
+        self,
+        pop_size: int = 50,
+        printed: Collection[str] = (),
+        output: Any = None,
+        evaluator: Any = None,
+        callback: Any = None,
+        termination: Any = None,
+        seed: int | None = None,
+    ):
+        pop_size = checks.whole("pop_size", pop_size, 1)
+        self.printed = [rule for rule in PRINTED if rule in printed_rules(printed, PRINTED)]
+        others = {"evaluator": evaluator, "callback": callback, "termination": termination, "seed": seed}
+        output = PathOutput() if output is None else output
+        super().__init__(pop_size=pop_size, output=output, **printed_operators(self.printed), **others)
+
+    def _setup(self, problem, **kwargs):
+        cells_of(problem, self.name)
+        super()._setup(problem, **kwargs)
+
+    def _set_optimum(self):
+        # A penalty would let pymoo prefer a path across obstacles.
+        pop: Any = self.pop
+        legal = self._are_legal(pop)
+        self.opt = filter_optimum(pop[legal] if legal.any() else pop, least_infeasible=True)
 
     def result(self):
         result: Any = super().result()
-        # The constraint is that no cell interferes: pymoo returns nothing else, and nothing if all do.
-        result.success = result.X is not None
-        result.message = "found a legal path" if result.success else "all paths of the last generation cross obstacles"
+        if result.opt is not None and not self._are_legal(result.opt).all():
+            result.opt = result.X = result.F = result.CV = result.G = result.H = None
+        result.success = result.opt is not None
+        result.message = "found a legal path" if result.success else "found no legal path, only such across obstacles"
         return result
+
+    @staticmethod
+    def _are_legal(pop) -> np.ndarray:
+        return are_legal(pop.get("interfering_cells"), pop.get("CV")[:, 0])
 
 
 def variable_length_ga(
@@ -118,6 +181,5 @@ def variable_length_ga(
     objective = PrintedLength() if "distances" in rules else Length()
     coding = CellSequence(grid, start, goal, max_cells)
     problem = GridPathProblem(grid, start, goal, coding, [objective], "constraint")
-    operators = cell_operators(problem, rules - {"distances"})
-    algorithm = make_algorithm(VariableLengthGA, problem, pop_size, operators=operators)
+    algorithm = make_algorithm(VariableLengthGA, problem, pop_size, printed=rules - {"distances"})
     return Setup(problem, algorithm, termination or MaximumGenerationTermination(n_gen))

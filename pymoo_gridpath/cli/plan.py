@@ -182,7 +182,7 @@ def _settle_options(spec, name: str, arguments) -> None:
     takes = {
         "pop_size": spec.takes_pop_size,
         "operators": spec.takes_operators or not is_planner,
-        "generations": not is_planner,
+        "generations": spec.takes_generations,
         "runs": not spec.deterministic,
         "max_seconds": is_planner and "max_seconds" in spec.parameters(),
     }

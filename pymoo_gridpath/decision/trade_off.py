@@ -11,8 +11,10 @@ from typing import Any
 
 import moocore
 import numpy as np
+from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.algorithms.known import find_algorithm
 from pymoo_gridpath.decision import export, provenance
 from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures
@@ -143,6 +145,7 @@ class TradeOffSet:
         self.paths = problem.decode(self.X)
         self.F = np.asarray(problem.score(self.paths), dtype=float)
         self.meta = meta or {}
+        self._algorithms: list[type[Algorithm]] = []
         self._cells = [np.asarray(self.paths.cells(k)) for k in range(len(keep))]
         self.measures = self._measure(measures)
 
@@ -169,7 +172,10 @@ class TradeOffSet:
             raise GridPathError("there are no Results, expected one or more")
         problem = _common_problem(runs)
         X = np.concatenate([_genes(run, k) for k, run in enumerate(runs)])
-        return cls(problem, X, _meta(problem, settings, [provenance.describe_run(run) for run in runs]))
+        made = cls(problem, X, _meta(problem, settings, [provenance.describe_run(run) for run in runs]))
+        algorithms = (getattr(run, "algorithm", None) for run in runs)
+        made._algorithms = [type(one) for one in algorithms if isinstance(one, Algorithm)]
+        return made
 
     @classmethod
     def from_genes(cls, problem, X, settings: Mapping | None = None) -> TradeOffSet:
@@ -315,11 +321,23 @@ class TradeOffSet:
         excess = float(self.measures["length"].min()) / self.least_length - 1.0
         if excess <= _MUCH_LONGER:
             return ""
-        if self.problem.representation.monotone:
-            attempts = "the representation 'cells', which codes every path, path-aware operators or more generations"
-        else:
-            attempts = "path-aware operators, more generations or the exact front"
-        return f"the shortest path found is {excess:.0%} longer than the shortest of all; try {attempts}"
+        return f"the shortest path found is {excess:.0%} longer than the shortest of all; try {self._attempts}"
+
+    @property
+    def _attempts(self) -> str:
+        """What may find a shorter path, in words, as far as those that found these can do it."""
+        # Of genes of any origin it is not known what they came from.
+        able = [find_algorithm(cls) for cls in self._algorithms]
+        monotone = self.problem.representation.monotone
+        attempts = {
+            "the representation 'cells', which codes every path": monotone,
+            "path-aware operators": not able or any(one.takes_operators for one in able),
+            "more generations": not able or any(one.takes_generations for one in able),
+            "a larger budget": not monotone and any(one.reference for one in able),
+            "the exact front": not monotone and not any(one.reference for one in able),
+        }
+        *others, last = (attempt for attempt, helps in attempts.items() if helps)
+        return f"{', '.join(others)} or {last}" if others else last
 
     def table(self, max_rows: int | None = None) -> str:
         """Return a plain text table, one line a path, with the names of those that have one.

@@ -205,8 +205,14 @@ def cell_operators(problem, printed: Collection[str] = ()) -> dict:
     GridPathError
         If a rule is unknown, or the problem has another representation.
     """
-    rules = printed_rules(printed, PRINTED)
+    made = printed_operators(printed)
     cells_of(problem, "cell_operators")
+    return made
+
+
+def printed_operators(printed: Collection[str] = ()) -> dict:
+    """Return the operators of `cell_operators`, which are the same for all problems that they are for."""
+    rules = printed_rules(printed, PRINTED)
     torn = "variation" in rules
     return {
         "sampling": GreedySampling(greedy="start" in rules),

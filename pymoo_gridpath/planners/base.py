@@ -64,6 +64,8 @@ class Planner(Algorithm, ABC):
         Default False.
     takes_operators, takes_pop_size : bool
         Class attributes: whether its constructor takes ``operators`` and ``pop_size``, as `make_algorithm` does. Default False.
+    takes_generations : bool
+        Class attribute: False, since it plans once.
     success, message
         As in the `Plan`, once it has run.
 
@@ -95,6 +97,7 @@ class Planner(Algorithm, ABC):
     turns_back: ClassVar[bool] = False
     takes_operators: ClassVar[bool] = False
     takes_pop_size: ClassVar[bool] = False
+    takes_generations: ClassVar[bool] = False
 
     # pymoo fills it when the run begins.
     termination: Any

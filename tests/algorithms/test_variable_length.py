@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from pymoo.optimize import minimize
 
-from pymoo_gridpath import OccupancyGrid
-from pymoo_gridpath.algorithms import PRINTED_RULES, variable_length_ga
-from pymoo_gridpath.errors import GridPathError, UnreachableError
+from pymoo_gridpath import GridPathProblem, OccupancyGrid
+from pymoo_gridpath.algorithms import PRINTED_RULES, find_algorithm, make_algorithm, variable_length_ga
+from pymoo_gridpath.cli import main
+from pymoo_gridpath.errors import CapabilityError, GridPathError, UnreachableError
 from pymoo_gridpath.maps import load_map
 from pymoo_gridpath.operators import SinglePointCrossover
 from pymoo_gridpath.problems import random_dense_grid
+from pymoo_gridpath.study import AlgorithmSpec, ProblemSpec, Study, run_study
 
 GRID = random_dense_grid(10, 0.2, 3)
 QUERY = (0, 0), (9, 9)
@@ -59,7 +61,7 @@ def test_the_best_string_is_never_lost():
 def test_no_illegal_path_is_returned():
     result = minimize(*variable_length_ga(WALL, (0, 0), (0, 4), printed=["start"], n_gen=1), seed=1)
     assert result.X is None and result.F is None and result.success is False
-    assert result.message == "all paths of the last generation cross obstacles"
+    assert result.message == "found no legal path, only such across obstacles"
     assert (result.pop.get("interfering_cells") > 0).all()
     result = minimize(*variable_length_ga(WALL, (0, 0), (0, 4)), seed=1)
     assert result.success and result.F[0] == pytest.approx(WALL.shortest_length((0, 0), (0, 4)))
@@ -118,3 +120,51 @@ def test_preset_refuses_in_words(bad, said):
 def test_a_query_without_a_path_is_refused():
     with pytest.raises(UnreachableError):
         variable_length_ga(OccupancyGrid([[0, 1, 0]]), (0, 0), (2, 0))
+
+
+def test_by_name_it_is_the_algorithm_of_the_preset():
+    problem = GridPathProblem(GRID, *QUERY, "cells", ["length"], "constraint")
+    for name in ("variable_length_ga", "VariableLengthGA", "variable-length GA"):
+        made = minimize(problem, make_algorithm(name, problem, 50, printed=["start"]), ("n_gen", 6), seed=3)
+        preset = minimize(*variable_length_ga(GRID, *QUERY, printed=["start"], n_gen=6), seed=3)
+        assert np.array_equal(made.pop.get("X"), preset.pop.get("X")) and made.message == preset.message
+    row = find_algorithm("variable_length_ga")
+    assert (row.takes_operators, row.takes_pop_size, row.deterministic, row.takes_generations) == (False, True, False, True)
+
+
+def test_no_illegal_path_is_returned_under_a_penalty_either():
+    problem = GridPathProblem(WALL, (0, 0), (0, 4), "cells", ["length"])
+    result = minimize(problem, make_algorithm("variable_length_ga", problem, printed=["start"]), ("n_gen", 1), seed=1)
+    assert (result.pop.get("interfering_cells") > 0).all() and not result.pop.get("CV").any()
+    assert result.X is None and result.F is None and result.opt is None and result.success is False
+
+
+@pytest.mark.parametrize(
+    ("options", "given", "said"),
+    [
+        ({"representation": "integer"}, {}, "for lists of cells, and the problem has the integer representation"),
+        ({"objectives": ("length", "turn")}, {}, "variable_length_ga takes one objective, the problem has 2"),
+        ({}, {"operators": {"crossover": "SpliceCrossover"}}, "variable_length_ga takes no argument 'crossover'"),
+        ({}, {"printed": ["distances"]}, "a rule of printed is 'distances'"),
+        ({}, {"pop_sise": 3}, "did you mean 'pop_size'"),
+    ],
+)
+def test_by_name_it_refuses_in_words(options, given, said):
+    problem = GridPathProblem(GRID, *QUERY, **{"representation": "cells", "objectives": ("length",), **options})
+    with pytest.raises((CapabilityError, GridPathError), match=said):
+        minimize(problem, make_algorithm("variable_length_ga", problem, **given), ("n_gen", 2))
+
+
+def test_it_works_on_the_command_line_and_in_studies(tmp_path, capsys):
+    plan = ["plan", "office", "--algorithm", "variable_length_ga", "--objectives", "length", "--generations", "2"]
+    assert main([*plan, "-o", str(tmp_path / "plan")]) == 0
+    assert "shortest" in capsys.readouterr().out
+    study = Study(
+        problems=[ProblemSpec(name="one", map="paper16", representation="cells", objectives=["length"])],
+        algorithms=[AlgorithmSpec(algorithm="variable_length_ga", pop_size=10, parameters={"printed": ["roulette"]})],
+        seeds=2,
+        budget={"generations": 2},
+    )
+    assert study.algorithms[0].label == "variable_length_ga"
+    outcome = run_study(study, tmp_path / "study")
+    assert (outcome.n_failed, outcome.n_run) == (0, 3)

@@ -10,11 +10,17 @@ import sys
 
 import numpy as np
 import pytest
+from pymoo.algorithms.moo.nsga2 import NSGA2
+from pymoo.core.population import Population
+from pymoo.core.result import Result
+from pymoo.optimize import minimize
 from trade_offs import draw, make_problem
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
+from pymoo_gridpath.algorithms.variable_length import VariableLengthGA
 from pymoo_gridpath.decision import NAMES, TradeOffSet, export, load_json
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.planners import Plan, Planner
 
 MEASURES = ["length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance"]
 
@@ -186,6 +192,47 @@ def test_paths_that_are_much_too_long_are_remarked_on_with_what_to_try():
     short = GridPathProblem(grid, (0, 0), (11, 0), "integer")
     advice = TradeOffSet.from_genes(short, [[0, 1, -1, *[0] * 8]]).advice
     assert "8% longer" in advice and "try the representation 'cells'" in advice
+
+
+def row_of(problem):
+    """Return a path from (0, 0) to (11, 0) with a step up at first."""
+    detour = {"cells": [0, *range(12, 24), 11], "integer": [0, 1, -1, *[0] * 8]}[problem.representation.name]
+    return np.pad(detour, (0, problem.n_var - len(detour)), mode="edge")[None]
+
+
+class Detour(Planner):
+    def plan(self, problem):
+        return Plan(row_of(problem), success=not self.reference)
+
+
+class Refined(Detour):
+    takes_operators = True
+
+
+class Truth(Detour):
+    reference = True
+
+
+@pytest.mark.parametrize(
+    ("coding", "algorithm", "attempts"),
+    [
+        ("cells", Detour, "the exact front"),
+        ("cells", Refined, "path-aware operators or the exact front"),
+        ("cells", Truth, "a larger budget"),
+        ("cells", VariableLengthGA, "more generations or the exact front"),
+        ("cells", NSGA2, "path-aware operators, more generations or the exact front"),
+        ("integer", Detour, "the representation 'cells', which codes every path"),
+        ("integer", NSGA2, "the representation 'cells', which codes every path, path-aware operators or more generations"),
+    ],
+)
+def test_what_to_try_is_what_the_algorithm_can_do(coding, algorithm, attempts):
+    problem = GridPathProblem(OccupancyGrid(np.zeros((6, 12))), (0, 0), (11, 0), coding)
+    run = Result()
+    run.problem, run.algorithm, run.pop = problem, algorithm(), Population.new("X", row_of(problem))
+    assert TradeOffSet.from_results(run).advice.endswith(f"longer than the shortest of all; try {attempts}")
+    # Of several runs, what any can do.
+    planned = minimize(problem, Refined())
+    assert "path-aware operators" in TradeOffSet.from_results([run, planned]).advice
 
 
 def test_nothing_is_remarked_on_where_it_cannot_be_known():

@@ -6,6 +6,7 @@ import importlib
 import json
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 
 import pytest
 
@@ -98,6 +99,22 @@ def test_a_planner_is_given_the_arguments_of_its_constructor(scouts):
     inside = {"algorithm": "scout", "parameters": {"reach": 1, "mood": "bold", "max_seconds": 3.0}}
     assert [run.key for run in planned([inside]).runs] == keys
     assert not set(keys) & {run.key for run in planned([{**table, "parameters": {"reach": 1}}]).runs}
+
+
+def test_tables_call_it_by_its_registered_name_and_keys_do_not_depend_on_that(scouts, monkeypatch):
+    tables = [{"algorithm": "scouts:Scout"}, {"algorithm": scouts.Herd, "pop_size": 6}, {"algorithm": scouts.Crowd(pop_size=3)}]
+    plan = planned(tables)
+    assert [one.label for one in plan.algorithms] == ["scout", "Herd", "crowd"]
+    for registry in (PLANNERS, ALGORITHMS):
+        monkeypatch.setattr(registry, "_known", {})
+        monkeypatch.setattr(registry, "_names", {})
+    unknown = planned(tables)
+    assert [one.label for one in unknown.algorithms] == ["Scout", "Herd", "Crowd"]
+    assert [run.key for run in unknown.runs] == [run.key for run in plan.runs]
+    points = {"pathfinder": EntryPoint("pathfinder", "scouts:Scout", "x")}
+    monkeypatch.setattr(PLANNERS, "_entry_points", points)
+    assert planned(tables).algorithms[0].label == "pathfinder"
+    assert planned([{**tables[0], "name": "mine"}]).algorithms[0].label == "mine"
 
 
 def test_a_planner_is_given_a_population_and_operators_if_it_says_so(scouts):

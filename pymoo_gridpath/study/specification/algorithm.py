@@ -10,6 +10,7 @@ from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.arguments import check_pop_size
+from pymoo_gridpath.algorithms.known import registered_name
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import OBSTACLES
@@ -39,7 +40,8 @@ class AlgorithmSpec:
         In place of ``algorithm``: the planner of the paper, see `ahmed_deb_2013`, with its penalty of 1; it keeps the
         representation of a problem if that is one of the paper's, and takes "integer" otherwise.
     name : str, optional
-        What tables call it; by default the algorithm's name. Unique in a study.
+        What tables call it; by default the algorithm's name: the one that it is registered by, or that of its class. Unique in
+        a study.
     pop_size : int, optional
         By default 100, the preset's 500.
     smoothness : bool, optional
@@ -138,11 +140,12 @@ class AlgorithmSpec:
                 raise StudyError(f"an algorithm that is made already takes no {key}, only a name", (key,))
         arguments = {key: value for key, value in made.table_of(planner, ("algorithm",)).items() if key != "class"}
         set_fields(self, algorithm=_operators.read_algorithm(type(planner), ("algorithm",)))
-        if _operators.planner_of(self.algorithm) is not None:
-            for key in ("max_seconds", "max_labels", "pop_size"):
-                if key in arguments:
-                    value = arguments.pop(key)
-                    set_fields(self, **{key: float(value) if key == "max_seconds" else value})
+        # Budgets of what is none of this package stand among its other arguments.
+        budgets = ("max_seconds", "max_labels") if _operators.planner_of(self.algorithm) is not None else ()
+        for key in ("pop_size", *budgets):
+            if key in arguments:
+                value = arguments.pop(key)
+                set_fields(self, **{key: float(value) if key == "max_seconds" else value})
         set_fields(self, parameters=arguments)
 
     def _gather_budget(self) -> None:
@@ -178,7 +181,9 @@ class AlgorithmSpec:
     def label(self) -> str:
         """What tables call it."""
         algorithm = self.algorithm["class"] if self.is_made else self.algorithm
-        return self.name or self.preset or str(algorithm).rpartition(":")[2]
+        if self.name or self.preset or not own.is_path(algorithm):
+            return self.name or self.preset or str(algorithm)
+        return registered_name(own.read(algorithm, ALGORITHM, ("algorithm",)).cls) or algorithm.rpartition(":")[2]
 
     @property
     def is_made(self) -> bool:
