@@ -6,6 +6,7 @@ from pymoo_gridpath.paths.cell import CellPaths
 from pymoo_gridpath.paths.column import ColumnPaths
 from pymoo_gridpath.paths.frame import MonotoneFrame
 from pymoo_gridpath.paths.sequences import Sequences
+from pymoo_gridpath.paths.trajectories import Trajectories
 
 __all__ = [
     "TURN_UNIT",
@@ -15,5 +16,6 @@ __all__ = [
     "Paths",
     "SequencePaths",
     "Sequences",
+    "Trajectories",
     "check_paths",
 ]

@@ -288,7 +288,7 @@ class RepresentationSuite:
         F = []
         for _ in range(2):
             search = NSGA2(pop_size=12, **operators(problem))
-            result: Any = minimize(problem, search, ("n_gen", 5), seed=1)
+            result: Any = minimize(problem, search, ("n_gen", 3), seed=1)
             F.append(result.F)
         assert np.array_equal(*F), "the same seed gave another result"
         paths = problem.decode(result.X)
