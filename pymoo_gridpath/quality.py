@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, counted
 
 #: By which share of an objective's largest size two values may differ and still be equal.
 SAME = 1e-9
@@ -235,6 +235,69 @@ def share_found(F: Any, front: Any) -> float:
     """
     points, reference = _pair(F, front)
     return reference.share_found(points)
+
+
+def mean_hypervolume_ratio(F: Any, fronts: Any) -> float:
+    """Return the mean of `hypervolume_ratio` over the epochs of a problem that changes, each against its own front.
+
+    Parameters
+    ----------
+    F : sequence of array_like, each of shape (N, n_obj), or None
+        What had been found at the end of each epoch, such as ``F`` of an `ObstacleClock`.
+    fronts : sequence of array_like, each of shape (K, n_obj)
+        The front of each epoch, such as ``[still.pareto_front() for still in problem.stills]``.
+
+    Returns
+    -------
+    float
+        1 where every front is reached.
+
+    Raises
+    ------
+    GridPathError
+        If there are not as many of one as of the other, at least one each, or as `hypervolume_ratio`.
+
+    Examples
+    --------
+    >>> mean_hypervolume_ratio([[[10, 5]], []], [[[10, 5]], [[12, 3]]])
+    0.5
+    """
+    return float(np.mean([reference.hypervolume_ratio(points) for points, reference in _epochs(F, fronts)]))
+
+
+def mean_igd_plus(F: Any, fronts: Any) -> float:
+    """Return the mean of `igd_plus` over the epochs of a problem that changes, each against its own front.
+
+    See `mean_hypervolume_ratio` for the arguments, and what is raised.
+
+    Returns
+    -------
+    float
+        0 where every point of every front is reached; ``inf`` if an epoch has no points.
+
+    References
+    ----------
+    Zhou, Jin and Zhang (2014), A population prediction strategy for evolutionary dynamic multiobjective optimization: the mean
+    of the inverted generational distance over time.
+
+    Examples
+    --------
+    >>> mean_igd_plus([[[10, 5]], [[12, 4]]], [[[10, 5]], [[12, 3]]])
+    0.5
+    """
+    return float(np.mean([reference.igd_plus(points) for points, reference in _epochs(F, fronts)]))
+
+
+def _epochs(F: Any, fronts: Any) -> list[tuple[np.ndarray, ReferenceFront]]:
+    """Return points and front of each epoch, checked."""
+    points = checks.items("F", F, "rows of numbers for each epoch")
+    references = checks.items("fronts", fronts, "a front for each epoch")
+    if not references or len(points) != len(references):
+        raise GridPathError(
+            f"F is of {counted(len(points), 'epoch')} and fronts of {len(references)}, expected as many of one as of the "
+            "other, at least one"
+        )
+    return [_pair(one, front) for one, front in zip(points, references, strict=True)]
 
 
 def _pair(F: Any, front: Any) -> tuple[np.ndarray, ReferenceFront]:

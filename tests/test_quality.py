@@ -10,7 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.quality import ReferenceFront, hypervolume_ratio, igd_plus, merge_fronts, share_found
+from pymoo_gridpath.quality import (
+    ReferenceFront,
+    hypervolume_ratio,
+    igd_plus,
+    mean_hypervolume_ratio,
+    mean_igd_plus,
+    merge_fronts,
+    share_found,
+)
 
 FRONT = np.array([[10.0, 5.0], [11.0, 3.0], [14.0, 1.0]])
 
@@ -179,3 +187,23 @@ def test_the_functions_take_what_pymoo_returns_and_refuse_what_is_no_front():
         ):
             with pytest.raises(GridPathError, match=message):
                 measure(F, front)
+
+
+def test_means_over_epochs_are_each_against_its_own_front():
+    rng = np.random.default_rng(1)
+    fronts = [random_front(rng, n, 2) for n in (5, 7, 3)]
+    found = [fronts[0], fronts[1] + 0.1, None]
+    span = np.ptp(fronts[1], axis=0)
+    missed = np.mean([min(np.linalg.norm(np.maximum(f - z, 0.0) / span) for f in found[1]) for z in fronts[1]])
+    assert mean_hypervolume_ratio(found, fronts) == pytest.approx((1 + defined_ratio(found[1], fronts[1])) / 3)
+    assert mean_igd_plus(found[:2], fronts[:2]) == pytest.approx(missed / 2)
+    assert mean_igd_plus(found, fronts) == math.inf
+    for measure in (mean_hypervolume_ratio, mean_igd_plus):
+        for F, references, message in (
+            (found, fronts[:2], "F is of 3 epochs and fronts of 2"),
+            ([], [], "at least one"),
+            (3, fronts, "F is 3"),
+            (found, [FRONT, FRONT, FRONT[0]], "front "),
+        ):
+            with pytest.raises(GridPathError, match=message):
+                measure(F, references)

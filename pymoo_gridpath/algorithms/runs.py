@@ -14,6 +14,7 @@ from pymoo.termination import get_termination
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.problems import GridPathProblem
 
 _MOST_RUNS = 100_000
 
@@ -29,7 +30,8 @@ def minimize_runs(
 ) -> list[Result]:
     """Run an algorithm several times and return all Results, for `TradeOffSet.from_results` to merge into one front.
 
-    Run k is ``pymoo.optimize.minimize(problem, algorithm, termination, seed=seed + k)``, bit for bit.
+    Run k is ``pymoo.optimize.minimize(problem, algorithm, termination, seed=seed + k)``, bit for bit; where obstacles move,
+    each begins with the first epoch.
 
     Parameters
     ----------
@@ -72,6 +74,8 @@ def minimize_runs(
     results = []
     for k in range(n_runs):
         run = copy.deepcopy(algorithm)
+        if isinstance(problem, GridPathProblem):
+            problem.restart()
         options: dict = {} if callback is None else {"callback": copy.deepcopy(callback)}
         if termination is not None:
             options["termination"] = copy.deepcopy(termination)

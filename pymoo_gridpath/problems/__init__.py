@@ -1,7 +1,8 @@
 """Path planning as pymoo problems, and generators of scenarios."""
 
+from pymoo_gridpath.problems.clock import ObstacleClock
 from pymoo_gridpath.problems.grid_path import OBSTACLES, GridPathProblem
-from pymoo_gridpath.problems.moving import MovingObstaclesProblem, ObstacleClock, random_movers
+from pymoo_gridpath.problems.moving import MovingObstaclesProblem, random_movers
 from pymoo_gridpath.problems.scenarios import (
     concave_environment,
     convex_environment,

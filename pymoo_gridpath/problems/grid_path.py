@@ -210,6 +210,16 @@ class GridPathProblem(Problem):
         """Names of the objectives in the order of the columns of F."""
         return [objective.name for objective in self.objectives]
 
+    # -- time ---------------------------------------------------------------------------------------------------------
+
+    @property
+    def stills(self) -> tuple[GridPathProblem, ...]:
+        """The problems that do not move, one a map that there is in a run: this one alone."""
+        return (self,)
+
+    def restart(self) -> None:
+        """Go back to where runs begin, which this problem never leaves; those whose time passes do."""
+
     # -- the exact front ----------------------------------------------------------------------------------------------
 
     def pareto_front(self, *args, **kwargs):

@@ -16,6 +16,8 @@ class Members:
     ----------
     algorithm : pymoo.core.algorithm.Algorithm
         With an evaluated population of a `GridPathProblem`.
+    pop : pymoo.core.population.Population, optional
+        Other members, by default the algorithm's population.
 
     Attributes
     ----------
@@ -26,8 +28,8 @@ class Members:
     n_legal, n_members : int
     """
 
-    def __init__(self, algorithm):
-        members = algorithm.pop.tolist()
+    def __init__(self, algorithm, pop=None):
+        members = (algorithm.pop if pop is None else pop).tolist()
         self._names = algorithm.problem.objective_names
         crossed = np.array([one.data["interfering_cells"] for one in members])
         violation = [one.CV[0] for one in members] if algorithm.problem.has_constraints() else None

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from pymoo.core.population import Population
-from pymoo.problems.dyn import DynamicTestProblem, TimeSimulation
+from pymoo.problems.dyn import DynamicTestProblem
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
@@ -65,7 +65,11 @@ class MovingObstaclesProblem(GridPathProblem, _Clocked):
         Different maps there are: the length of the longest of the movers' ways.
     taut : int
     tau : int
-        Generations so far; it may be set, to 0 for a new run, say.
+        Generations so far; it may be set, and a new run needs that: to 0, as `restart` does, or to where it is to begin.
+    ran : bool
+        Whether time has passed since ``tau`` was set.
+    stills : tuple of GridPathProblem
+        The problem of each epoch, which does not move, with its exact front: ``problem.stills[3].pareto_front()``.
 
     Raises
     ------
@@ -125,8 +129,17 @@ class MovingObstaclesProblem(GridPathProblem, _Clocked):
 
     @tau.setter
     def tau(self, value: int) -> None:
-        self._tau = checks.whole("tau", value, 0)
+        self._tau, self.ran = checks.whole("tau", value, 0), False
         self._enter()
+
+    def tic(self, elapsed: int = 1) -> None:
+        """Let generations pass, one by default."""
+        super().tic(elapsed)
+        self.ran = True
+
+    def restart(self) -> None:
+        """Set the time back to the beginning, for a new run."""
+        self.tau = 0
 
     @property
     def time(self):
@@ -144,9 +157,19 @@ class MovingObstaclesProblem(GridPathProblem, _Clocked):
         return min(self.time, self.n_epochs - 1)
 
     @property
+    def ends(self) -> bool:
+        """Whether an epoch ends with this generation, and another one follows."""
+        return self._time is None and self.epoch < self.n_epochs - 1 and (self.tau + 1) % self.taut == 0
+
+    @property
     def still(self) -> GridPathProblem:
         """The problem of the map that there is now, which does not move."""
         return self._stills[self.epoch]
+
+    @property
+    def stills(self) -> tuple[GridPathProblem, ...]:
+        """The problem of each epoch, which does not move."""
+        return self._stills
 
     def _enter(self) -> None:
         """Take the map of this epoch, with all that hangs on it."""
@@ -172,46 +195,6 @@ class MovingObstaclesProblem(GridPathProblem, _Clocked):
         """Return which individuals were evaluated on another map than there is now, or never, bool, shape (N,)."""
         checks.instance("pop", pop, Population, " of pymoo")
         return np.array([one is None or one != self.epoch for one in pop.get("epoch", to_numpy=False)], dtype=bool)
-
-
-class ObstacleClock(TimeSimulation):
-    """A callback that lets time pass in a `MovingObstaclesProblem`, and sees to it that no value of an earlier map is returned.
-
-    After each generation but the last it calls the problem's `tic`. An algorithm that is told of changes has its population
-    evaluated anew at once when the map changes. Others look for changes themselves, by a few members: what they have
-    missed by the end of the next generation is evaluated anew then. So the values in a Result are those of the map that there
-    is at the end of the run. pymoo's own `TimeSimulation` lets time pass only, and a Result may hold what was true before.
-
-    Evaluations are counted with the algorithm's own.
-
-    Parameters
-    ----------
-    told : bool, optional
-        Whether the algorithm is told. By default those are that do not look for changes themselves, as D-NSGA-II and KGB do.
-
-    Attributes
-    ----------
-    n_missed : int
-        Members so far that an algorithm had kept with values of an earlier map over a generation.
-    """
-
-    def __init__(self, told: bool | None = None):
-        super().__init__()
-        self.told = told if told is None else checks.flag("told", told)
-        self.n_missed = 0
-
-    def update(self, algorithm: Any) -> None:
-        problem = algorithm.problem
-        if not isinstance(problem, MovingObstaclesProblem):
-            raise GridPathError(
-                f"ObstacleClock is for a MovingObstaclesProblem, and the problem is of the class {type(problem).__name__}"
-            )
-        self.n_missed += _refresh(algorithm)
-        if algorithm.termination.has_terminated():
-            return
-        problem.tic()
-        if _is_told(algorithm) if self.told is None else self.told:
-            _refresh(algorithm)
 
 
 def random_movers(
@@ -320,24 +303,3 @@ def _stills(base, movers, n_epochs: int, start, goal, objectives, penalty, max_c
         GridPathProblem(grid, start, goal, coding, objectives, "penalty", penalty)
         for grid, coding in zip(grids, codings, strict=True)
     )
-
-
-def _is_told(algorithm: Any) -> bool:
-    """Return whether an algorithm does not look for changes itself; those of pymoo that do know how many members to try."""
-    return not any(name.lower() == "perc_detect_change" for name in vars(algorithm))
-
-
-def _refresh(algorithm: Any) -> int:
-    """Evaluate anew the members that were evaluated on another map; return how many these are."""
-    problem, pop = algorithm.problem, algorithm.pop
-    stale = problem.is_stale(pop)
-    if stale.any():
-        algorithm.evaluator.eval(problem, pop[stale], skip_already_evaluated=False, algorithm=algorithm)
-        survival = getattr(algorithm, "survival", None)
-        if survival is not None:
-            # Ranks and the like are of the values before.
-            algorithm.pop = survival.do(
-                problem, pop, n_survive=len(pop), algorithm=algorithm, random_state=algorithm.random_state
-            )
-        algorithm._set_optimum()
-    return int(stale.sum())

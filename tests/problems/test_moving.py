@@ -7,17 +7,19 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+from pymoo.core.callback import Callback
 from pymoo.core.population import Population
 from pymoo.optimize import minimize
 from pymoo.problems.dyn import DynamicTestProblem, TimeSimulation
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
-from pymoo_gridpath.algorithms import make_algorithm
+from pymoo_gridpath.algorithms import make_algorithm, minimize_runs
 from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
 from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.operators.path_terrain import terrain_of
 from pymoo_gridpath.planners import PathOutput
 from pymoo_gridpath.problems import MovingObstaclesProblem, ObstacleClock, random_movers
+from pymoo_gridpath.quality import hypervolume_ratio, mean_hypervolume_ratio
 from pymoo_gridpath.representations import CellSequence
 
 START, GOAL = (0, 0), (11, 11)
@@ -221,3 +223,71 @@ def test_random_movers_step_to_free_neighbours_and_leave_a_way():
         assert len(np.unique(places, axis=0)) == 12 and not grid.occupied[places[:, 1], places[:, 0]].any()
     with pytest.raises(GridError, match="there is room for 3 movers that leave a way, expected 4"):
         random_movers(OccupancyGrid(np.zeros((2, 3)), corner_cutting=True), (0, 0), (2, 1), 4, 2, 1)
+
+
+class Seen(Callback):
+    """Keeps the epoch of each generation, and whether its values are those of the map of then."""
+
+    def __init__(self):
+        super().__init__()
+        self.seen = []
+
+    def _update(self, algorithm):
+        problem = algorithm.problem
+        F = problem.evaluate(algorithm.pop.get("X"), return_values_of=["F"])
+        self.seen.append((problem.epoch, np.array_equal(F, algorithm.pop.get("F"))))
+
+
+def test_the_clock_keeps_what_was_found_in_each_epoch():
+    grid, movers, problem = make(taut=2, n_epochs=4)
+    clock = ObstacleClock(callback=Seen())
+    result = minimize(problem, make_algorithm("NSGA2", problem, 20), ("n_gen", 11), seed=1, callback=clock)
+    # The last map is that of all generations after it came.
+    assert clock.epochs == [0, 1, 2, 3] and clock.evaluations[-1] == result.algorithm.evaluator.n_eval
+    # Two generations, and all members anew when the map had changed.
+    assert np.diff(clock.evaluations)[:2].tolist() == [60, 60]
+    assert clock.callback.seen == [(min(k // 2, 3), True) for k in range(11)]
+    for epoch, X, F in zip(clock.epochs, clock.X, clock.F, strict=True):
+        still = still_of(grid, movers, epoch, problem)
+        assert len(F) and np.array_equal(still.evaluate(X, return_values_of=["F"]), F)
+        assert (still.decode(X).interfering_cells == 0).all()
+        assert problem.stills[epoch].grid == still.grid
+    np.testing.assert_array_equal(np.unique(result.F, axis=0), clock.F[-1])
+    fronts = [still.pareto_front() for still in problem.stills]
+    ratios = [hypervolume_ratio(F, front) for F, front in zip(clock.F, fronts, strict=True)]
+    assert mean_hypervolume_ratio(clock.F, fronts) == pytest.approx(np.mean(ratios)) and min(ratios) < 1
+    # A run that ends within an epoch ends that one.
+    problem.restart()
+    minimize(problem, make_algorithm("NSGA2", problem, 20), ("n_gen", 3), seed=1, callback=(clock := ObstacleClock()))
+    assert clock.epochs == [0, 1] and len(clock.F) == len(clock.X) == 2
+
+
+def test_a_clock_that_renews_nothing_keeps_what_is_true_all_the_same():
+    *_, problem = make(taut=2, n_epochs=4)
+    clock = ObstacleClock(renew=False)
+    result = minimize(problem, make_algorithm("NSGA2", problem, 20), ("n_gen", 8), seed=1, callback=clock)
+    # It is the search of pymoo's own clock.
+    problem.restart()
+    other = minimize(problem, make_algorithm("NSGA2", problem, 20), ("n_gen", 8), seed=1, callback=TimeSimulation())
+    assert np.array_equal(result.pop.get("F"), other.pop.get("F")) and problem.is_stale(result.pop).any()
+    assert result.algorithm.evaluator.n_eval == other.algorithm.evaluator.n_eval
+    for epoch, X, F in zip(clock.epochs, clock.X, clock.F, strict=True):
+        assert np.array_equal(problem.stills[epoch].evaluate(X, return_values_of=["F"]).reshape(F.shape), F)
+    with pytest.raises(GridPathError, match="told is True and renew False"):
+        ObstacleClock(told=True, renew=False)
+
+
+def test_a_run_does_not_begin_where_another_one_ended():
+    *_, problem = make()
+    first = minimize(problem, make_algorithm("NSGA2", problem, 10), ("n_gen", 7), seed=1, callback=ObstacleClock())
+    with pytest.raises(GridPathError, match=r"at generation 6, expected problem\.restart\(\)"):
+        minimize(problem, make_algorithm("NSGA2", problem, 10), ("n_gen", 7), seed=1, callback=ObstacleClock())
+    # What is set is meant.
+    problem.tau = 3
+    minimize(problem, make_algorithm("NSGA2", problem, 10), ("n_gen", 4), seed=1, callback=(clock := ObstacleClock()))
+    assert clock.epochs == [1, 2]
+    runs = minimize_runs(problem, make_algorithm("NSGA2", problem, 10), ("n_gen", 7), 2, seed=1, callback=ObstacleClock())
+    assert np.array_equal(runs[0].F, first.F) and [run.algorithm.callback.epochs for run in runs] == [[0, 1, 2]] * 2
+    still = GridPathProblem(problem.grid, START, GOAL)
+    still.restart()
+    assert still.stills == (still,)
