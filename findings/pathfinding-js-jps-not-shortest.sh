@@ -11,6 +11,7 @@ tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
 npm install pathfinding@0.4.18 --silent --no-audit --no-fund --prefix "$tmp"
+[[ $(node -p "require('./node_modules/pathfinding/package.json').version") == 0.4.18 ]]
 node - <<'JS'
 const assert = require("assert");
 const PF = require("pathfinding");

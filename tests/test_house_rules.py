@@ -239,11 +239,9 @@ def test_commands_return_exit_codes_by_name():
 
 
 def test_corners_are_looked_at_once_for_each_form_of_a_path():
-    """As edges of a graph, bits of steps, cells in order, columns, and beside what moves;
-    the suites of `testing` hold them together.
-    """
+    """As edges of a graph, as bits of steps, as cells in order, and as columns; the suites of `testing` hold them together."""
     found = {name for name, tree in TREES.items() if any(corners(tree))}
-    assert found == {"grid.cells", "search.moves", "paths.base", "paths.column", "paths.frame", "exact.timed"}
+    assert found == {"grid.cells", "search.moves", "paths.base", "paths.column", "paths.frame"}
     assert any(corners(ast.parse("if not grid.corner_cutting:\n    diagonal = diagonal & free")))
 
 

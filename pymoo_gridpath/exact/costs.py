@@ -19,7 +19,7 @@ from pymoo_gridpath.search import Moves
 LENGTH_UNIT = 2**36
 
 # The cost of a step along each heading, of objectives that are multiples of the length.
-_OCTILE = np.where(DIAGONAL, round(SQRT2 * LENGTH_UNIT), LENGTH_UNIT)
+OCTILE = np.where(DIAGONAL, round(SQRT2 * LENGTH_UNIT), LENGTH_UNIT)
 
 # No sum along a path may come near 2**61.
 _LARGEST_SUM = 2.0**58
@@ -108,7 +108,7 @@ class Costs:
     @property
     def tells_steps(self) -> bool:
         """Whether paths of the same costs take the same number of steps: those that are of the same length do."""
-        lengths = (self.step == _OCTILE).all(axis=(1, 2)) & ~self.field.any(axis=1)
+        lengths = (self.step == OCTILE).all(axis=(1, 2)) & ~self.field.any(axis=1)
         return bool((lengths if self.enter is None else lengths & ~self.enter.any(axis=(1, 2))).any())
 
     @property
@@ -201,7 +201,7 @@ def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.n
     nothing = np.zeros(moves.n_cells, dtype=np.int64)
     if cells is None and not isinstance(steps, np.ndarray):
         if not turn and pair[0] > 0.0 and pair[1] == SQRT2 * pair[0]:
-            return _One(np.tile(_OCTILE, (9, 1)), nothing, float(pair[0]) / LENGTH_UNIT)
+            return _One(np.tile(OCTILE, (9, 1)), nothing, float(pair[0]) / LENGTH_UNIT)
         if turn and not pair.any():
             return _One(TURN_UNITS, nothing, turn)
     free = nothing if cells is None else np.where(usable, np.ravel(cells), 0.0)

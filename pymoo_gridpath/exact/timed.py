@@ -10,14 +10,15 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.errors import counted
 from pymoo_gridpath.exact.budget import Budget, Meter
-from pymoo_gridpath.exact.costs import LENGTH_UNIT
+from pymoo_gridpath.exact.costs import OCTILE
 from pymoo_gridpath.fields import QUANTUM, obstacle_potential
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid, check_grid
-from pymoo_gridpath.neighbourhood import DIAGONAL, HEADINGS
+from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths.trajectories import Trajectories
-from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.moves import Moves, uncut
 
-_DIAGONAL_LENGTH = round(SQRT2 * LENGTH_UNIT)
+#: The length of a step along each heading, and of a wait.
+_LENGTHS = np.append(OCTILE, 0)
 
 
 class TimedFront(NamedTuple):
@@ -99,8 +100,8 @@ def exact_timed_front(
         if meter.message or not len(labels[-1]):
             break
         after, potential = _tick(grid, at[tick], variance)
-        barred = _barred(moves, grid, at[tick - 1], at[tick], occupied, after)
-        made = _layer(moves.legal & ~barred, moves.offsets, after, potential, labels[-1], n_before, ends[:, 2:], last)
+        barred = _barred(grid, at[tick - 1], at[tick], occupied, after)
+        made = _layer(moves.legal & ~barred, moves.offsets, _LENGTHS, after, potential, labels[-1], n_before, ends[:, 2:], last)
         n_before += len(labels[-1])
         home = made[:, 0] == last
         if home.any():
@@ -145,15 +146,9 @@ def _tick(grid: OccupancyGrid, cells: np.ndarray, variance: float) -> tuple[np.n
     return occupied.ravel(), np.rint(potential.ravel() / QUANTUM).astype(np.int64)
 
 
-def _barred(moves: Moves, grid: OccupancyGrid, before, after, occupied, occupied_after) -> np.ndarray:
+def _barred(grid: OccupancyGrid, before, after, occupied, occupied_after) -> np.ndarray:
     """Return the steps that moving obstacles bar besides those into their cells, as bits, uint8, shape (n_cells,)."""
-    barred = np.zeros((grid.height, grid.width), dtype=np.uint8)
-    if not grid.corner_cutting:
-        beside = np.pad((occupied | occupied_after).reshape(grid.shape), 1, constant_values=False)
-        for m in np.flatnonzero(DIAGONAL):
-            dx, dy = HEADINGS[m]
-            side = beside[1:-1, 1 + dx : 1 + dx + grid.width] | beside[1 + dy : 1 + dy + grid.height, 1:-1]
-            barred |= side.astype(np.uint8) << np.uint8(m)
+    barred = ~uncut(grid, np.pad(~(occupied | occupied_after).reshape(grid.shape), 1))
     # Who meets an obstacle halfway has the middle of the step in common with it.
     for (x0, y0), (x1, y1) in zip(before.tolist(), after.tolist(), strict=True):
         if max(abs(x1 - x0), abs(y1 - y0)) != 1:
@@ -167,7 +162,7 @@ def _barred(moves: Moves, grid: OccupancyGrid, before, after, occupied, occupied
 
 
 @kernel
-def _layer(legal, offsets, occupied, potential, labels, n_before, ends, goal):
+def _layer(legal, offsets, lengths, occupied, potential, labels, n_before, ends, goal):
     """Return the non-dominated labels of the next tick, int64, shape (n, 4); those at the goal lead no further."""
     heads = np.full(len(legal), -1)
     out = np.empty((9 * len(labels), 4), dtype=np.int64)
@@ -179,12 +174,11 @@ def _layer(legal, offsets, occupied, potential, labels, n_before, ends, goal):
             continue
         for m in range(9):
             other = cell
-            length = labels[i, 2]
+            length = labels[i, 2] + lengths[m]
             if m < 8:
                 if not (legal[cell] >> m) & 1:
                     continue
                 other = cell + offsets[m]
-                length += _DIAGONAL_LENGTH if m % 2 else LENGTH_UNIT
             if occupied[other]:
                 continue
             vulnerability = labels[i, 3] + potential[other]

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from pymoo_gridpath.grid import Box, OccupancyGrid
-from pymoo_gridpath.neighbourhood import HEADINGS, OPPOSITE
+from pymoo_gridpath.neighbourhood import DIAGONAL, HEADINGS, OPPOSITE
 
 
 def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
@@ -18,6 +18,24 @@ def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
         leads = np.flatnonzero(legal >> np.uint8(m) & 1)
         back[leads + offsets[m]] |= np.uint8(1 << OPPOSITE[m])
     return back
+
+
+def uncut(grid: OccupancyGrid, free: np.ndarray) -> np.ndarray:
+    """Return the steps that cut no corner that the grid forbids to cut, as bits like those of `Moves.legal`, uint8, shape (h, w).
+
+    ``free`` says which cells are free, with a rim of those around them, bool, shape (h + 2, w + 2).
+    """
+    bits = np.full((free.shape[0] - 2, free.shape[1] - 2), 255, dtype=np.uint8)
+    if not grid.corner_cutting:
+        for m in np.flatnonzero(DIAGONAL):
+            dx, dy = HEADINGS[m]
+            cut = ~(_shifted(free, dx, 0) & _shifted(free, 0, dy))
+            bits ^= cut.astype(np.uint8) << np.uint8(m)
+    return bits
+
+
+def _shifted(padded: np.ndarray, dx: int, dy: int) -> np.ndarray:
+    return padded[1 + dy : padded.shape[0] - 1 + dy, 1 + dx : padded.shape[1] - 1 + dx]
 
 
 class Moves:
@@ -67,15 +85,11 @@ class Moves:
         legal = np.zeros(self.box.shape, dtype=np.uint8)
         for m in headings:
             dx, dy = HEADINGS[m]
-            possible = self._shifted(free, 0, 0) & self._shifted(free, dx, dy)
-            if dx and dy and not grid.corner_cutting:
-                possible &= self._shifted(free, dx, 0) & self._shifted(free, 0, dy)
+            possible = _shifted(free, 0, 0) & _shifted(free, dx, dy)
             legal |= possible.astype(np.uint8) << np.uint8(m)
+        legal &= uncut(grid, free)
         self.legal = legal.ravel()
         self.offsets = (HEADINGS[:, 1] * self.width + HEADINGS[:, 0]).astype(np.int64)
-
-    def _shifted(self, padded: np.ndarray, dx: int, dy: int) -> np.ndarray:
-        return padded[1 + dy : 1 + dy + self.height, 1 + dx : 1 + dx + self.width]
 
     @property
     def entered(self) -> np.ndarray:

@@ -58,11 +58,11 @@ class MapFormatSuite:
 
     def write(self, path: Path, grid: OccupancyGrid) -> None:
         """Write which cells of a grid are occupied to a file of this format, without calling its reader."""
-        raise NotImplementedError
+        raise NotImplementedError("the suite needs a method write(self, path, grid) that writes a file of the format")
 
     def write_query(self, path: Path, grid: OccupancyGrid, query: Query) -> None:
         """Write a grid and the query that its file names; needed where the format has a `query` of its own."""
-        raise NotImplementedError
+        raise NotImplementedError("the suite needs a method write_query(self, path, grid, query), since the format has a query")
 
     # -- helpers ------------------------------------------------------------------------------------------------------
 

@@ -36,7 +36,7 @@ class OperatorSuite:
 
     def make(self) -> Operator:
         """Return a new operator."""
-        raise NotImplementedError
+        raise NotImplementedError("the suite needs a method make(self) that returns a new operator")
 
     def problem(self) -> Any:
         """Return a small problem."""

@@ -13,6 +13,7 @@ from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.problems.grid_path import Obstacles
 from pymoo_gridpath.testing.global_state import global_state
 
 CODINGS = ("cells", "integer", "binary", "mixed", "absolute")
@@ -28,14 +29,14 @@ class PlannerSuite:
 
     def make(self) -> Planner:
         """Return a new planner."""
-        raise NotImplementedError
+        raise NotImplementedError("the suite needs a method make(self) that returns a new planner")
 
-    def problem(self, coding: str = "cells", obstacles: str = "penalty", limit: float | None = None) -> Any:
+    def problem(self, coding: str = "cells", obstacles: Obstacles = "penalty", limit: float | None = None) -> Any:
         """Return a small problem that a planner has to solve: override it for one that takes others only."""
         occupied = np.zeros((7, 8), dtype=bool)
         occupied[2:5, 3], occupied[3, 5] = True, True
         grid = OccupancyGrid(occupied, corner_cutting=False)
-        return GridPathProblem(grid, (0, 0), (7, 6), coding, obstacles=obstacles, potential_limit=limit)  # type: ignore[arg-type]
+        return GridPathProblem(grid, (0, 0), (7, 6), coding, obstacles=obstacles, potential_limit=limit)
 
     def run(self, problem: Any, seed: int = 1) -> Any:
         """Return the Result of a new planner."""

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
+
+from pymoo_gridpath.testing.enumeration import non_dominated
 
 
 def place(way, tick):
@@ -23,8 +27,10 @@ def enumerated(occupied, corner_cutting, start, goal, ways, horizon):
 
     known = {(x, y, t): potential((x, y), t) for x in range(width) for y in range(height) for t in range(horizon + 1)}
 
+    @functools.cache
     def steps_from(cell, tick):
-        """Yield where one step or a wait may lead."""
+        """Return where one step or a wait may lead, and over how many sides of cells."""
+        found = []
         before, after = ({place(way, t) for way in ways} for t in (tick, tick + 1))
         for dx in (-1, 0, 1):
             for dy in (-1, 0, 1):
@@ -36,7 +42,8 @@ def enumerated(occupied, corner_cutting, start, goal, ways, horizon):
                 steps = [(place(way, tick), place(way, tick + 1)) for way in ways]
                 if (dx or dy) and any(a != b and (a[0] + b[0], a[1] + b[1]) == (cell[0] + x, cell[1] + y) for a, b in steps):
                     continue
-                yield (x, y), abs(dx) + abs(dy)
+                found.append(((x, y), abs(dx) + abs(dy)))
+        return found
 
     # Every path there is; those that are at the same cell at the same costs are one.
     now = {(start, 0, 0, known[(*start, 0)])} if all(place(way, 0) != start for way in ways) else set()
@@ -50,8 +57,7 @@ def enumerated(occupied, corner_cutting, start, goal, ways, horizon):
                 else:
                     then.add((other, *costs))
         now = then
-    rows = {(t, s + d * 2**0.5, r * 2.0**-30) for t, s, d, r in points}
-    return sorted(a for a in rows if not any(b != a and all(u <= v for u, v in zip(b, a, strict=True)) for b in rows))
+    return non_dominated((t, s + d * 2**0.5, r * 2.0**-30) for t, s, d, r in points)
 
 
 def wander(rng, size, n):

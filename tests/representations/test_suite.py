@@ -23,7 +23,7 @@ from pymoo_gridpath.representations import (
     Representation,
     make_representation,
 )
-from pymoo_gridpath.testing import RepresentationSuite
+from pymoo_gridpath.testing import MapFormatSuite, OperatorSuite, PlannerSuite, RepresentationSuite
 
 
 class Headings(Representation):
@@ -88,9 +88,19 @@ class TestRepresentations(RepresentationSuite):
         return self.cls(grid, start, goal)
 
 
-def test_a_suite_without_make_says_so():
-    with pytest.raises(NotImplementedError, match="needs a method make"):
-        RepresentationSuite().make(OccupancyGrid([[0, 0]]), (0, 0), (1, 0))
+@pytest.mark.parametrize(
+    ("call", "method"),
+    [
+        (lambda: RepresentationSuite().make(OccupancyGrid([[0, 0]]), (0, 0), (1, 0)), r"make\(self, grid, start, goal\)"),
+        (lambda: PlannerSuite().make(), r"make\(self\) that returns a new planner"),
+        (lambda: OperatorSuite().make(), r"make\(self\) that returns a new operator"),
+        (lambda: MapFormatSuite().write(*"ab"), r"write\(self, path, grid\)"),
+        (lambda: MapFormatSuite().write_query(*"abc"), r"write_query\(self, path, grid, query\)"),
+    ],
+)
+def test_a_suite_without_what_it_needs_says_so(call, method):
+    with pytest.raises(NotImplementedError, match=f"the suite needs a method {method}"):
+        call()
 
 
 # -- faults that the suite finds --------------------------------------------------------------------------------------------
