@@ -21,7 +21,7 @@ def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def uncut(grid: OccupancyGrid, free: np.ndarray) -> np.ndarray:
-    """Return the steps that cut no corner that the grid forbids to cut, as bits like those of `Moves.legal`, uint8, shape (h, w).
+    """Return the steps that cut no corner that the grid forbids to cut, bits as in `Moves.legal`, uint8, shape (h, w).
 
     ``free`` says which cells are free, with a rim of those around them, bool, shape (h + 2, w + 2).
     """
