@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any, cast
 
 import numpy as np
+from pymoo.core.callback import Callback
 from pymoo.core.population import Population
 from world import Call, World
 
@@ -24,7 +25,7 @@ from pymoo_gridpath import (
     representations,
 )
 from pymoo_gridpath.maps.shipped import ShippedMap
-from pymoo_gridpath.paths import CellPaths, ColumnPaths
+from pymoo_gridpath.paths import CellPaths, ColumnPaths, Trajectories
 from pymoo_gridpath.paths.frame import MonotoneFrame
 
 
@@ -100,6 +101,7 @@ def _problems(w: World) -> dict[str, Call]:
         "GridPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
         "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),
+        "GridPathProblem.restart": (problem.restart, {}),
         "GridPathProblem.score": (problem.score, {"paths": paths}),
         "MovingObstaclesProblem": (
             problems.MovingObstaclesProblem,
@@ -116,8 +118,9 @@ def _problems(w: World) -> dict[str, Call]:
         "MovingObstaclesProblem.decode": (moving.decode, {"X": w.rows(moving)}),
         "MovingObstaclesProblem.is_stale": (moving.is_stale, {"pop": Population.new("X", w.rows(moving))}),
         "MovingObstaclesProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
+        "MovingObstaclesProblem.restart": (moving.restart, {}),
         "MovingObstaclesProblem.score": (moving.score, {"paths": moving.decode(w.rows(moving))}),
-        "ObstacleClock": (problems.ObstacleClock, {"told": True}),
+        "ObstacleClock": (problems.ObstacleClock, {"told": True, "renew": True, "callback": Callback()}),
         "random_movers": (
             problems.random_movers,
             {"grid": w.grid, **w.query, "n_movers": 1, "n_epochs": 3, "random_state": 1},
@@ -226,6 +229,11 @@ def _paths(w: World) -> dict[str, Call]:
         "ColumnPaths.cells": (paths.cells, {"index": 1}),
         "ColumnPaths.through": (ColumnPaths.through, {"frame": frame, "exit_rows": paths.leave[:, :n]}),
         "ColumnPaths.total": (paths.total, {"sums": w.problem.representation.prepare(w.field)}),
+        "Trajectories": (
+            Trajectories,
+            {"movers": [{1: (0, 1), 3: (0, 3)}], "after": "gone", "before": "absent", "gaps": "interpolate"},
+        ),
+        "Trajectories.cells": (Trajectories([[(0, 1), (0, 2)]]).cells, {"n_ticks": 4}),
         "CellPaths": (partial(_measured, CellPaths), {"grid": w.grid, "rows": cells.rows}),
         "CellPaths.cells": (cells.cells, {"index": 1}),
         "CellPaths.total": (cells.total, {"field": w.field.ravel()}),
@@ -248,10 +256,23 @@ def _search(w: World) -> dict[str, Call]:
         **_planners(w),
         "find_algorithm": (algorithms.find_algorithm, {"name": "nsga2"}),
         "hypervolume_ratio": (quality.hypervolume_ratio, {"F": front + 0.5, "front": front}),
+        "mean_hypervolume_ratio": (quality.mean_hypervolume_ratio, {"F": [front + 0.5, front], "fronts": [front, front]}),
+        "mean_igd_plus": (quality.mean_igd_plus, {"F": [front + 0.5, front], "fronts": [front, front]}),
         "igd_plus": (quality.igd_plus, {"F": front + 0.5, "front": front}),
         "share_found": (quality.share_found, {"F": front, "front": front}),
         "Budget": (exact.Budget, {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False}),
         "exact_front": (exact.exact_front, {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0)}),
+        "exact_timed_front": (
+            exact.exact_timed_front,
+            {
+                "grid": w.grid,
+                **w.query,
+                "movers": Trajectories([[(-1, 0), (-2, 0)]]),
+                "horizon": 12,
+                "variance": 0.7,
+                "budget": exact.Budget(max_seconds=2.0),
+            },
+        ),
         "ExactResult": (
             exact.ExactResult,
             {

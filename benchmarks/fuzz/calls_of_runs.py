@@ -6,6 +6,8 @@ import dataclasses
 from typing import Any
 
 import numpy as np
+from pymoo.core.callback import Callback
+from pymoo.core.evaluator import Evaluator
 from pymoo.termination import get_termination
 from world import Call, World
 
@@ -135,6 +137,18 @@ def _algorithms(w: World) -> dict[str, Call]:
                 "printed": ["start", "roulette"],
                 "termination": get_termination("n_gen", 2),
                 "max_cells": 40,
+            },
+        ),
+        "VariableLengthGA": (
+            algorithms.VariableLengthGA,
+            {
+                "pop_size": 12,
+                "printed": ["start", "roulette"],
+                "output": algorithms.PathOutput(),
+                "evaluator": Evaluator(),
+                "callback": Callback(),
+                "termination": get_termination("n_gen", 2),
+                "seed": 1,
             },
         ),
         "Setup": (algorithms.Setup, {"problem": w.problem, "algorithm": algorithm, "termination": get_termination("n_gen", 2)}),

@@ -31,6 +31,7 @@ BUILDING_BLOCKS = (
     "SequencePaths",
     "Sequences",
     "SightPaths",
+    "TimedFront",
     "Waypoints",
     "check_box",
     "check_grid",
