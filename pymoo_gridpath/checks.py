@@ -6,11 +6,12 @@ either: what they hide would be taken for real.
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import math
 import os
 import reprlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sized
 from decimal import Decimal
 from numbers import Integral, Real
 from typing import Any, TypeVar
@@ -157,10 +158,13 @@ def flag(name: str, value: Any, error: type[GridPathError] = GridPathError, *, e
 
 
 def text(name: str, value: Any, error: type[GridPathError] = GridPathError) -> str:
-    """Return a text."""
-    if not isinstance(value, str):
-        raise error(f"{name} is {shown(value)}, expected a text")
-    return value
+    """Return a text, of letters that a file can hold: half of a pair of surrogates is none."""
+    try:
+        if isinstance(value, str) and value.encode() is not None:
+            return value
+    except UnicodeEncodeError:
+        pass
+    raise error(f"{name} is {shown(value)}, expected a text")
 
 
 def one_of(name: str, value: Any, known: Iterable[str], error: type[GridPathError] = GridPathError) -> str:
@@ -190,14 +194,14 @@ def names(name: str, value: Any, error: type[GridPathError] = GridPathError) -> 
     return found
 
 
-def items(name: str, value: Any, expected: str, error: type[GridPathError] = GridPathError) -> list:
-    """Return the list of the items of a list, tuple, array, set, dictionary view, or whatever knows its length."""
-    if not isinstance(value, Iterable) or isinstance(value, str | bytes) or not hasattr(value, "__len__"):
-        raise error(f"{name} is {shown(value)}, expected {expected}")
-    try:
-        return list(value)
-    except Exception:  # an array without dimensions, or an object's own failure
-        raise error(f"{name} is {shown(value)}, expected {expected}") from None
+def items(name: str, value: Any, expected: str, error: type[GridPathError] = GridPathError, most: float = math.inf) -> list:
+    """Return the items, at the most so many, of a list, tuple, array, set, dictionary view, or whatever knows its length."""
+    if isinstance(value, Iterable) and isinstance(value, Sized) and not isinstance(value, str | bytes):
+        # An array without dimensions, or an object's own failure, is refused below.
+        with contextlib.suppress(Exception):
+            if len(value) <= most:
+                return list(value)
+    raise error(f"{name} is {shown(value)}, expected {expected}")
 
 
 def instance(

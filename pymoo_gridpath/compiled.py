@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import threading
 import time
 import warnings
 from collections.abc import Callable
@@ -50,7 +51,7 @@ def is_ctrl_c(error: BaseException | None) -> bool:
 
 
 def seconds_compiling() -> float:
-    """Return for how many seconds numba has compiled in this process so far, which leaves out what it kept from an earlier."""
+    """Return for how many seconds numba has compiled in this process so far, or fetched what it kept from an earlier."""
     return 0.0 if _compiling is None else _compiling.seconds
 
 
@@ -67,16 +68,30 @@ def _listen():
     from numba.core import event
 
     class Compiling(event.Listener):
-        told = False
+        """Numba's lock is held, or waited for, while it compiles, and while it fetches what it has kept or keeps it."""
+
         seconds = 0.0
         depth = 0
         begin = 0.0
+        counting = threading.Lock()
 
         def on_start(self, event):
-            # A kernel that calls others has them compiled while it is. All of it is done under one lock.
-            if self.depth == 0:
-                self.begin = time.perf_counter()
-            self.depth += 1
+            # A kernel that calls others has them compiled while it is; other threads wait for it.
+            with self.counting:
+                if self.depth == 0:
+                    self.begin = time.perf_counter()
+                self.depth += 1
+
+        def on_end(self, event):
+            with self.counting:
+                self.depth -= 1
+                if self.depth == 0:
+                    self.seconds += time.perf_counter() - self.begin
+
+    class Telling(event.Listener):
+        told = False
+
+        def on_start(self, event):
             if not self.told and event.data["dispatcher"].py_func in _kernels:
                 self.told = True
                 # Workers, whoever started them, leave it to the process that they work for.
@@ -84,13 +99,12 @@ def _listen():
                     say_that_it_compiles()
 
         def on_end(self, event):
-            self.depth -= 1
-            if self.depth == 0:
-                self.seconds += time.perf_counter() - self.begin
+            pass
 
-    listener = Compiling()
-    event.register("numba:compile", listener)
-    return listener
+    compiling, telling = Compiling(), Telling()
+    event.register("numba:compiler_lock", compiling)
+    event.register("numba:compile", telling)
+    return compiling, telling
 
 
-_compiling = None if numba is None else _listen()
+_compiling, _telling = (None, None) if numba is None else _listen()

@@ -16,11 +16,13 @@ from pymoo.optimize import minimize
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid, checks
 from pymoo_gridpath.decision import TradeOffSet, knee_point
-from pymoo_gridpath.errors import GridError, GridPathError
+from pymoo_gridpath.errors import GridError, GridPathError, MapError
 from pymoo_gridpath.exact import exact_front
+from pymoo_gridpath.maps import load_shipped
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.representations import REPRESENTATIONS, CellSequence, make_representation
+from pymoo_gridpath.study.running.store import Store
 
 FUZZ = Path(__file__).resolve().parents[1] / "benchmarks" / "fuzz"
 
@@ -101,6 +103,26 @@ def test_whole_numbers_keep_to_their_range():
     for value in (0, 6, 5.0, True, "5", np.nan, 10**400):
         with pytest.raises(GridPathError, match="expected a whole number of at least 1 and at most 5"):
             checks.whole("n", value, 1, 5)
+
+
+def test_texts_are_of_letters_that_a_file_can_hold(tmp_path):
+    half = "a\ud800"
+    with pytest.raises(GridPathError, match=r"title is .*, expected a text"):
+        checks.text("title", half)
+    with pytest.raises(GridPathError, match=r"key is .*, expected the key of a run"):
+        Store(tmp_path).write(half, b"")
+    with pytest.raises(MapError, match="no such shipped map") as refused:
+        load_shipped("long " * 50_000)
+    assert len(str(refused.value)) < 300
+
+
+def test_of_too_many_items_none_is_looked_at():
+    endless = (1 / 0 for _ in range(1))
+    with pytest.raises(GridPathError, match="expected two"):
+        checks.items("pair", endless, "two", most=2)
+    with pytest.raises(GridPathError, match="expected two"):
+        checks.items("pair", [1, 2, 3], "two", most=2)
+    assert checks.items("pair", {1: 2, 3: 4}.keys(), "two", most=2) == [1, 3]
 
 
 def test_flags_are_truth_values():

@@ -4,7 +4,7 @@ import importlib.util
 import os
 import subprocess
 import sys
-from types import SimpleNamespace
+import time
 
 import pytest
 
@@ -32,8 +32,8 @@ def use(path, monkeypatch):
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    if compiled._compiling is not None:
-        monkeypatch.setattr(compiled._compiling, "told", False)
+    if compiled._telling is not None:
+        monkeypatch.setattr(compiled._telling, "told", False)
     assert module.four_times(3) == module.four_times(3) == 12
     assert module.four_times(0.5) == 2.0
 
@@ -69,10 +69,28 @@ def test_compiling_that_cannot_be_kept_is_said_each_time(kernels, monkeypatch, c
         assert capsys.readouterr().err == f"{COMPILING}\n"
 
 
+def test_the_clock_stands_still_while_compiled_code_is_fetched(kernels, monkeypatch):
+    use(kernels, monkeypatch)
+    import numba
+
+    fetch = numba.core.caching.Cache.load_overload
+
+    def slow(self, *args):
+        before.append(working_seconds())
+        time.sleep(0.2)
+        after.append(working_seconds())
+        return fetch(self, *args)
+
+    before, after = [], []
+    monkeypatch.setattr(numba.core.caching.Cache, "load_overload", slow)
+    use(kernels, monkeypatch)
+    assert before and before == after
+
+
 def test_functions_of_others_compile_without_a_word(kernels, monkeypatch, capsys):
     import numba
 
-    monkeypatch.setattr(compiled._compiling, "told", False)
+    monkeypatch.setattr(compiled._telling, "told", False)
     before = compiled.seconds_compiling()
     assert numba.njit(lambda number: number + 1)(1) == 2
     assert capsys.readouterr().err == ""
@@ -82,6 +100,7 @@ def test_functions_of_others_compile_without_a_word(kernels, monkeypatch, capsys
 def test_nothing_is_said_without_numba(kernels, monkeypatch, capsys):
     monkeypatch.setattr(compiled, "numba", None)
     monkeypatch.setattr(compiled, "_compiling", None)
+    monkeypatch.setattr(compiled, "_telling", None)
     use(kernels, monkeypatch)
     assert capsys.readouterr().err == "" and compiled.seconds_compiling() == 0.0
 
@@ -135,28 +154,28 @@ def test_compiling_does_not_count_as_time_of_a_search(kernels, monkeypatch):
 
 def test_the_working_clock_stands_still_while_numba_compiles(monkeypatch):
     event = pytest.importorskip("numba").core.event
-    data = {"dispatcher": SimpleNamespace(py_func=None)}
     now = [0.0]
     monkeypatch.setattr(compiled.time, "perf_counter", lambda: now[0])
     begin = working_seconds()
     now[0] = 5.0
     assert working_seconds() - begin == 5.0
-    event.start_event("numba:compile", data)
+    event.start_event("numba:compiler_lock")
     now[0] = 15.0
-    event.start_event("numba:compile", data)  # of a function that the first one calls
+    event.start_event("numba:compiler_lock")  # of a function that the first one calls
     now[0] = 300.0
-    event.end_event("numba:compile", data)
+    event.end_event("numba:compiler_lock")
     assert working_seconds() - begin == pytest.approx(5.0)
-    event.end_event("numba:compile", data)
+    event.end_event("numba:compiler_lock")
     now[0] = 302.0
     assert working_seconds() - begin == pytest.approx(7.0)
-    event.start_event("numba:compile", data)
+    event.start_event("numba:compiler_lock")
     now[0] = 400.0
-    event.end_event("numba:compile", data)
+    event.end_event("numba:compiler_lock")
     assert working_seconds() - begin == pytest.approx(7.0)
 
 
 def test_the_working_clock_is_a_clock_without_numba(monkeypatch):
     monkeypatch.setattr(compiled, "_compiling", None)
+    monkeypatch.setattr(compiled, "_telling", None)
     monkeypatch.setattr(compiled.time, "perf_counter", lambda: 3.5)
     assert working_seconds() == 3.5

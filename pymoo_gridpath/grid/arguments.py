@@ -51,7 +51,7 @@ def as_pose(origin) -> tuple[float, ...]:
     """Return (x, y, yaw)."""
     expected = "(x, y) or (x, y, yaw) in metres and radians"
     try:
-        pose = tuple(checks.number("origin", v, expected=expected) for v in checks.items("origin", origin, expected))
+        pose = tuple(checks.number("origin", v, expected=expected) for v in checks.items("origin", origin, expected, most=3))
     except GridPathError:
         pose = ()
     if len(pose) not in (2, 3):

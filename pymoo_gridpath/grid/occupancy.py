@@ -413,7 +413,7 @@ class OccupancyGrid(Cells):
 def check_box(box: Box, grid: OccupancyGrid) -> Box:
     """Return what is given as a box of cells of a grid if it is one."""
     expected = f"a Box of cells of the grid of {check_grid(grid).width} x {grid.height}"
-    ends = [checks.whole("box", end, expected=expected) for end in checks.items("box", box, expected)]
+    ends = [checks.whole("box", end, expected=expected) for end in checks.items("box", box, expected, most=4)]
     if len(ends) == 4:
         x0, y0, x1, y1 = ends
         if 0 <= x0 < x1 <= grid.width and 0 <= y0 < y1 <= grid.height:

@@ -14,6 +14,9 @@ from pymoo_gridpath.maps.text import read_text, read_text_header
 
 _FOLDER = Path(__file__).parent / "data"
 
+# So much of a name that no map has stands in the message.
+_LONGEST_NAME = 80
+
 
 @dataclass(frozen=True)
 class ShippedMap:
@@ -109,7 +112,10 @@ def _shipped(name: str) -> Path:
     if name not in (names := _names()):
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         hint = f" (did you mean {near[0]!r}?)" if near else ""
-        raise MapError(name, f"no such file and no such shipped map{hint}, expected a map file or one of {', '.join(names)}")
+        raise MapError(
+            name[:_LONGEST_NAME],
+            f"no such file and no such shipped map{hint}, expected a map file or one of {', '.join(names)}",
+        )
     return _FOLDER / f"{name}.txt"
 
 

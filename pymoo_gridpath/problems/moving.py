@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from pymoo.core.individual import Individual
 from pymoo.core.population import Population
 from pymoo.problems.dyn import DynamicTestProblem
 
@@ -193,7 +194,8 @@ class MovingObstaclesProblem(GridPathProblem, _Clocked):
 
     def is_stale(self, pop) -> np.ndarray:
         """Return which individuals were evaluated on another map than there is now, or never, bool, shape (N,)."""
-        checks.instance("pop", pop, Population, " of pymoo")
+        if not isinstance(pop, Population) or not all(isinstance(one, Individual) for one in pop):
+            raise GridPathError(f"pop is {checks.shown(pop)}, expected a Population of pymoo")
         return np.array([one is None or one != self.epoch for one in pop.get("epoch", to_numpy=False)], dtype=bool)
 
 

@@ -163,9 +163,9 @@ def test_estimate_does_not_count_compiling(monkeypatch):
         now[0] += 1.0
         if second and not compiled_yet:
             compiled_yet.append(True)
-            event.start_event("numba:compile", {"dispatcher": SimpleNamespace(py_func=None)})
+            event.start_event("numba:compiler_lock")
             now[0] += 600.0
-            event.end_event("numba:compile", {})
+            event.end_event("numba:compiler_lock")
 
     monkeypatch.setattr(Algorithm, "next", slow)
     plan = plan_study(

@@ -143,6 +143,8 @@ def test_those_that_look_themselves_are_not_told():
     for _ in range(3):
         given.next()
     assert not problem.is_stale(given.pop).any()
+    with pytest.raises(GridPathError, match=r"pop is .*, expected a Population"):
+        problem.is_stale(np.array(["a", "b"]).view(Population))
 
 
 def test_evaluations_anew_are_counted(monkeypatch):

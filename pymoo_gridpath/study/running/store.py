@@ -78,7 +78,8 @@ class Store:
 
     def path(self, key: str) -> Path:
         """Return the file of a run, whether it is there or not."""
-        if not isinstance(key, str) or not 0 < len(key) <= _LONGEST_KEY or Path(key).name != key or "\0" in key:
+        is_name = isinstance(key, str) and key.isascii() and Path(key).name == key and "\0" not in key
+        if not is_name or not 0 < len(key) <= _LONGEST_KEY:
             raise GridPathError(f"key is {checks.shown(key)}, expected the key of a run")
         return self.folder / "runs" / key[:2] / f"{key}.npz"
 
@@ -165,7 +166,8 @@ class Store:
     def write_plan(self, plan: Plan, study: str | None = None) -> None:
         """Store the plan, and the text of the study file if there is one."""
         checks.instance("plan", plan, Plan)
-        checks.instance("study", study, str, " of the study file", optional=True)
+        if study is not None:
+            checks.text("study", study)
         self._write(self.folder / "plan.json", json.dumps(plan.to_json(), separators=(",", ":")).encode())
         file = self.folder / "study.toml"
         if study is not None:
