@@ -8,7 +8,6 @@ import re
 import subprocess
 import sys
 import time
-from types import SimpleNamespace
 
 import pytest
 from pymoo.core.algorithm import Algorithm
