@@ -2,7 +2,7 @@
 
     python benchmarks/cells_examined.py [--queries 30]
 
-The paper's six environments of 10 x 10 cells are lost; those here stand in for them, drawn by hand after their names. The
+The paper's six environments of 10 x 10 cells are lost; those of `small_environment` stand in for them. The
 counts of the rivals in the paper are those of the demo of PathFinding.js, which adds up the cells that are opened, closed and,
 by jumps, tested: each cell counts twice or more. That of quadrant selection is the authors' own tally. So two numbers stand
 here for each search: operations, counted as the demo does, and for quadrant selection each test of a step; and distinct free
@@ -30,48 +30,27 @@ from pymoo_gridpath.algorithms import (
     QuadrantSelection,
 )
 from pymoo_gridpath.maps import load_map, shipped_maps
+from pymoo_gridpath.problems import SMALL_ENVIRONMENTS, small_environment
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.testing.enumeration import query_on
 from pymoo_gridpath.testing.reference import length
 
-# Top row first: "S" the start, "G" the goal, "#" occupied.
-ENVIRONMENTS = {
-    "I spiral": """
-        S......... ########.. .......#.. .#####.#.. .#...#.#.. .#.G.#.#.. .#.###.#.. .#.....#.. .#######.. ..........
-    """,
-    "II caved": """
-        .......... .#####.... .#...#.... .#.S.#.##. .#...#.#.. .##.##.#.. .......#.. ..######.. .......#G. ..........
-    """,
-    "III warehouse": """
-        S......... .##.##.##. .##.##.##. .......... .##.##.##. .##.##.##. .......... .##.##.##. .##.##.##. ........G.
-    """,
-    "IV zigzag": """
-        S......... ########.. .......... ..######## .......... ########.. .......... ..######## .......... .........G
-    """,
-    "V random": """
-        S...#..... ..#....#.. ....#..... .#....#... ...#....#. ......#... .#..#..... ......#.#. ..#....... .....#...G
-    """,
-    "VI narrow": """
-        S....#.... .....#.... .....#.... .....#.... .......... .....#.... .....#.... .....#.... .....#.... .....#...G
-    """,
-}
-
 # As printed, in the order of `searches`; quadrant selection last. First the cells examined, then the lengths of paths.
 PUBLISHED = {
-    "I spiral": (68, 92, 92, 66, 92, 70, 49),
-    "II caved": (109, 164, 164, 77, 118, 156, 68),
-    "III warehouse": (43, 150, 145, 43, 67, 174, 21),
-    "IV zigzag": (92, 112, 112, 71, 75, 120, 60),
-    "V random": (68, 186, 186, 52, 110, 313, 62),
-    "VI narrow": (76, 152, 152, 53, 94, 117, 60),
+    "spiral": (68, 92, 92, 66, 92, 70, 49),
+    "caved": (109, 164, 164, 77, 118, 156, 68),
+    "warehouse-alike": (43, 150, 145, 43, 67, 174, 21),
+    "zigzag": (92, 112, 112, 71, 75, 120, 60),
+    "random": (68, 186, 186, 52, 110, 313, 62),
+    "narrow way": (76, 152, 152, 53, 94, 117, 60),
 }
 PUBLISHED_LENGTHS = {
-    "I spiral": (27.9, 27.9, 27.9, 27.9, 27.9, 32, 27.9),
-    "II caved": (17.07, 17.07, 17.07, 17.07, 17.07, 20, 16.72),
-    "III warehouse": (12.31, 12.31, 12.31, 12.31, 12.31, 17, 12.313),
-    "IV zigzag": (17.31, 17.31, 17.31, 17.31, 17.31, 22, 16.731),
-    "V random": (13.31, 13.31, 13.1, 13.9, 13.31, 18, 12.95),
-    "VI narrow": (14.31, 14.31, 14.31, 15.49, 14.31, 19, 13.82),
+    "spiral": (27.9, 27.9, 27.9, 27.9, 27.9, 32, 27.9),
+    "caved": (17.07, 17.07, 17.07, 17.07, 17.07, 20, 16.72),
+    "warehouse-alike": (12.31, 12.31, 12.31, 12.31, 12.31, 17, 12.313),
+    "zigzag": (17.31, 17.31, 17.31, 17.31, 17.31, 22, 16.731),
+    "random": (13.31, 13.31, 13.1, 13.9, 13.31, 18, 12.95),
+    "narrow way": (14.31, 14.31, 14.31, 15.49, 14.31, 19, 13.82),
 }
 
 
@@ -103,19 +82,12 @@ def examine(grid: OccupancyGrid, start, goal) -> dict[str, tuple[int, int, float
     return found
 
 
-def drawn(text: str, corner_cutting: bool) -> tuple[OccupancyGrid, tuple[int, int], tuple[int, int]]:
-    """Return the grid of a drawing, its start and its goal."""
-    rows = text.split()[::-1]
-    start, goal = (next((row.index(letter), y) for y, row in enumerate(rows) if letter in row) for letter in "SG")
-    return OccupancyGrid([[letter == "#" for letter in row] for row in rows], corner_cutting=corner_cutting), start, goal
-
-
 def show(title: str, rows: Mapping[str, Sequence[object]]) -> None:
     """Print a table."""
     print(f"\n{title}")
-    print(f"{'':14}" + "".join(f"{name:>15}" for name in searches()))
+    print(f"{'':16}" + "".join(f"{name:>15}" for name in searches()))
     for name, row in rows.items():
-        print(f"{name:14}" + "".join(f"{value:>15}" for value in row))
+        print(f"{name:16}" + "".join(f"{value:>15}" for value in row))
 
 
 def saved(cells: Sequence[float]) -> list[str]:
@@ -133,7 +105,7 @@ def main() -> None:
     show("PACE of the paper's counts", {name: saved(row) for name, row in PUBLISHED.items()})
     for corner_cutting in (True, False):
         stated = f"Stand-ins, corners {'may' if corner_cutting else 'may not'} be cut"
-        found = {name: list(examine(*drawn(text, corner_cutting)).values()) for name, text in ENVIRONMENTS.items()}
+        found = {name: list(examine(*small_environment(name, corner_cutting)).values()) for name in SMALL_ENVIRONMENTS}
         show(f"{stated}: operations / distinct cells", {name: [f"{a} / {b}" for a, b, _ in row] for name, row in found.items()})
         show(f"{stated}: lengths", {name: [f"{of:.2f}" for _, _, of in row] for name, row in found.items()})
         show(f"{stated}: PACE", {name: saved([b for _, b, _ in row]) for name, row in found.items()})

@@ -129,6 +129,7 @@ def _problems(w: World) -> dict[str, Call]:
         "convex_environment": (problems.convex_environment, {"random_state": 1}),
         "concave_environment": (problems.concave_environment, {"random_state": 1}),
         "maze_environment": (problems.maze_environment, {"random_state": 1}),
+        "small_environment": (problems.small_environment, {"name": "caved", "corner_cutting": True}),
         "far_corners": (problems.far_corners, {"grid": w.grid}),
         "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
         "Length": (objectives.Length, {}),

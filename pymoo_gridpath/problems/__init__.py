@@ -1,6 +1,7 @@
 """Path planning as pymoo problems, and generators of scenarios."""
 
 from pymoo_gridpath.problems.clock import ObstacleClock
+from pymoo_gridpath.problems.environments import SMALL_ENVIRONMENTS, small_environment
 from pymoo_gridpath.problems.grid_path import OBSTACLES, GridPathProblem
 from pymoo_gridpath.problems.moving import MovingObstaclesProblem, random_movers
 from pymoo_gridpath.problems.scenarios import (
@@ -13,6 +14,7 @@ from pymoo_gridpath.problems.scenarios import (
 
 __all__ = [
     "OBSTACLES",
+    "SMALL_ENVIRONMENTS",
     "GridPathProblem",
     "MovingObstaclesProblem",
     "ObstacleClock",
@@ -22,4 +24,5 @@ __all__ = [
     "maze_environment",
     "random_dense_grid",
     "random_movers",
+    "small_environment",
 ]
