@@ -16,7 +16,7 @@ def test_environments_have_the_size_of_the_paper_and_a_path(name):
     for corner_cutting in (True, False):
         grid, start, goal = small_environment(name, corner_cutting)
         assert grid.shape == (10, 10) and grid.name == name and grid.corner_cutting == corner_cutting
-        assert GridPathProblem(grid, start, goal).pareto_front() is not None
+        assert GridPathProblem(grid, start, goal, "cells").pareto_front() is not None
     # Without diagonal steps all is still joined.
     labels, _ = ndimage.label(~grid.occupied)
     assert labels[start[1], start[0]] == labels[goal[1], goal[0]] > 0
