@@ -64,6 +64,8 @@ PLAIN_PAGES = (
     "algorithms",
     "exact",
     "companions",
+    "planners",
+    "papers",
     "maps",
     "command_line",
     "extend",
