@@ -15,6 +15,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridError
 from pymoo_gridpath.grid.arguments import as_cell, as_cells
 from pymoo_gridpath.grid.box import Box
+from pymoo_gridpath.neighbourhood import Neighbourhood, neighbourhood_of
 
 SQRT2 = math.sqrt(2.0)
 
@@ -43,6 +44,11 @@ class Cells:
     def corner_cutting(self) -> bool:
         """Whether a diagonal step may touch an occupied cell."""
         return self._corner_cutting
+
+    @property
+    def neighbourhood(self) -> Neighbourhood:
+        """What diagonal steps may pass, as the rule by which all that deals with paths goes."""
+        return neighbourhood_of(self._corner_cutting)
 
     @property
     def width(self) -> int:
@@ -87,10 +93,10 @@ class Cells:
     def regions(self) -> np.ndarray:
         """Label of the connected free region of each cell, shape (height, width); 0 where occupied.
 
-        Without corner cutting a diagonal step needs both cells beside it free, so regions are those of the four straight
-        moves; with it, those of all eight.
+        Where a diagonal step may pass between two occupied cells, regions are those of all eight moves. Elsewhere it joins but
+        what the four straight ones do.
         """
-        structure = np.ones((3, 3)) if self._corner_cutting else None
+        structure = np.ones((3, 3)) if self.neighbourhood.squeezes else None
         part = self._free_box.slices
         labels = np.zeros(self.shape, dtype=np.int32)
         labels[part] = ndimage.label(~self._occupied[part], structure=structure)[0]  # pyright: ignore
@@ -131,9 +137,9 @@ class Cells:
 
         add(index[:, :-1], index[:, 1:], free[:, :-1] & free[:, 1:], 1.0)
         add(index[:-1, :], index[1:, :], free[:-1, :] & free[1:, :], 1.0)
-        rising, falling = free[:-1, :-1] & free[1:, 1:], free[1:, :-1] & free[:-1, 1:]
-        if not self._corner_cutting:
-            rising, falling = rising & falling, rising & falling
+        (low_left, low_right), (high_left, high_right) = ((rows[:, :-1], rows[:, 1:]) for rows in (free[:-1], free[1:]))
+        rising = low_left & high_right & self.neighbourhood.may_pass(low_right, high_left)
+        falling = high_left & low_right & self.neighbourhood.may_pass(low_left, high_right)
         add(index[:-1, :-1], index[1:, 1:], rising, SQRT2)
         add(index[1:, :-1], index[:-1, 1:], falling, SQRT2)
         (a, b), length = np.concatenate(pairs, axis=1), np.concatenate(lengths)

@@ -157,11 +157,12 @@ class Paths(ABC):
         long, short = self._reach
         count = np.maximum(long - 1, 0)
         count += occupied.take(cells)
-        if not self.grid.corner_cutting:
+        neighbourhood = self.grid.neighbourhood
+        if neighbourhood.restricts:
             diagonal = np.flatnonzero((long == 1) & (short == 1))
             cell = cells[diagonal]
-            count[diagonal] += occupied.take(cell + dx[diagonal])
-            count[diagonal] += occupied.take(cell + dy[diagonal] * self.grid.width)
+            across, up = cell + dx[diagonal], cell + dy[diagonal] * self.grid.width
+            count[diagonal] += neighbourhood.crossings(occupied.take(across), occupied.take(up))
         return self._sum(count)
 
     def cells(self, index: int) -> np.ndarray:

@@ -75,7 +75,7 @@ class ColumnPaths(Paths):
         leave[:, :-1] = exit_rows
         leave[:, -1] = frame.goal_row
         step = np.sign(leave[:, 1:] - leave[:, :-1])
-        if not frame.grid.corner_cutting:
+        if frame.grid.neighbourhood.restricts:
             step *= frame._flanks_at(leave[:, :-1], step) == 0
         enter = np.empty_like(leave)
         enter[:, 0] = frame.start_row
@@ -160,7 +160,7 @@ class ColumnPaths(Paths):
         Where the grid forbids to cut corners, an occupied cell beside a diagonal step counts as crossed by that step.
         """
         count = self.total(self.frame.occupied_sums)
-        if not self.frame.grid.corner_cutting:
+        if self.grid.neighbourhood.restricts:
             count += self.frame._flanks_at(self.leave[:, :-1], self._step).sum(axis=1)
         return count
 
