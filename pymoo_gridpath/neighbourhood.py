@@ -1,7 +1,8 @@
-"""The eight steps to a neighbouring cell: their directions, what lies between two of them, and what a diagonal one may pass."""
+"""The steps to a neighbouring cell: their directions and lengths, what lies between two of them, and which a grid allows."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,10 @@ OPPOSITE = (np.arange(8) + 4) % 8
 #: Whether each heading is diagonal.
 DIAGONAL = np.arange(8) % 2 == 1
 
+#: The length of a diagonal step, and of the step along each heading, in cells.
+SQRT2 = math.sqrt(2.0)
+LENGTHS = np.where(DIAGONAL, SQRT2, 1.0)
+
 
 def turns_between(before: np.ndarray, after: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
     """Return the turn from headings to others, elementwise, in units of 45 degrees; written to ``out`` if it is given."""
@@ -37,23 +42,32 @@ def turn_units() -> np.ndarray:
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """What a diagonal step of a grid may pass: the one rule by which paths are searched for, coded, counted and judged.
+    """The steps of a grid: the one rule by which paths are searched for, coded, counted and judged.
 
     Beside a diagonal step lie two cells, which share a side with both of its ends.
 
     Parameters
     ----------
+    diagonal : bool
+        Whether there are diagonal steps at all. Where there are none, a path that goes from a cell to one that touches it at a
+        corner leaves out a cell.
     crossed : (int, int, int)
-        How many cells a diagonal step counts as crossing, besides its ends, where none, one and both of those are occupied. The
+        How many cells a diagonal step crosses besides its ends, where none, one and both of those beside it are occupied. The
         step is legal where it is 0; it is nowhere less for more that are occupied.
     """
 
+    diagonal: bool
     crossed: tuple[int, int, int]
 
     @property
     def restricts(self) -> bool:
         """Whether there are diagonal steps between free cells that are not legal."""
         return any(self.crossed)
+
+    @property
+    def rounds(self) -> bool:
+        """Whether a diagonal step may pass one occupied cell."""
+        return self.crossed[1] == 0
 
     @property
     def squeezes(self) -> bool:
@@ -75,10 +89,26 @@ class Neighbourhood:
         return np.array(self.crossed, dtype=np.int8).take(occupied.view(np.int8) + occupied_too.view(np.int8))
 
 
-# By whether corners may be cut.
-_NEIGHBOURHOODS = {False: Neighbourhood((0, 1, 2)), True: Neighbourhood((0, 0, 0))}
+#: What a grid may say of corners: they are cut, kept, or passed where at most one of the cells beside a step is occupied.
+ONE_SIDE = "one side"
+CORNERS = {True: (0, 0, 0), False: (0, 1, 2), ONE_SIDE: (0, 0, 2)}
+
+#: How many steps there may be from a cell.
+MOVES = (4, 8)
+
+#: What they are called.
+_WORDS = {
+    True: "corners may be cut",
+    False: "corners may not be cut",
+    ONE_SIDE: "corners may be cut on one side",
+}
 
 
-def neighbourhood_of(corner_cutting: bool) -> Neighbourhood:
-    """Return the rule of a grid on which corners may be cut, or not."""
-    return _NEIGHBOURHOODS[corner_cutting]
+def steps_in_words(moves: int, corner_cutting: bool | str) -> str:
+    """Return what is said of the steps of a grid."""
+    return _WORDS[corner_cutting] if moves == 8 else "no diagonal steps"
+
+
+def neighbourhood_of(moves: int, corner_cutting: bool | str) -> Neighbourhood:
+    """Return the steps of a grid; without diagonal ones it does not matter how corners are passed."""
+    return Neighbourhood(moves == 8, CORNERS[corner_cutting] if moves == 8 else (1, 1, 1))

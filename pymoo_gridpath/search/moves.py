@@ -57,6 +57,8 @@ class Moves:
     box : Box
     width, height : int
         Of the box.
+    diagonal : bool
+        Whether the grid has diagonal steps at all.
     legal : numpy.ndarray of uint8, shape (n_cells,)
         Bit m is set where the step along heading m stays on the grid, ends in a free cell and cuts no corner that the grid
         forbids to cut. No bit is set in occupied cells.
@@ -89,6 +91,7 @@ class Moves:
             legal |= possible.astype(np.uint8) << np.uint8(m)
         legal &= uncut(grid, free)
         self.legal = legal.ravel()
+        self.diagonal = grid.neighbourhood.diagonal
         self.offsets = (HEADINGS[:, 1] * self.width + HEADINGS[:, 0]).astype(np.int64)
 
     @property

@@ -73,7 +73,7 @@ def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyG
         for seed in family.seeds:
             content = {"size": family.size, "p0": family.p0, "seed": seed, "corner_cutting": family.corner_cutting}
             grid = {"random": content}
-            if neighbourhood_of(family.corner_cutting).restricts:
+            if neighbourhood_of(8, family.corner_cutting).restricts:
                 # Elsewhere there is always a path.
                 refuse(study, (*place_of(k), "random"), f"seed {seed}: ", build_grid(grid).check_query, (0, 0), goal)
             yield _Item(str(seed), grid, None, (0, 0), goal)
