@@ -13,7 +13,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.problems.members import Members
+from pymoo_gridpath.problems.members import Members, snapshot
 
 
 class ConvergenceRecorder(Callback):
@@ -67,10 +67,11 @@ class ConvergenceRecorder(Callback):
         if self._measures is None:
             self._measures = PathMeasures(algorithm.problem)
         members = Members(algorithm)
-        self.evaluations.append(int(algorithm.evaluator.n_eval))
+        found = snapshot(algorithm, members)
+        self.evaluations.append(found.n_eval)
         self.generations.append(int(algorithm.n_iter))
-        self.n_feasible.append(members.n_legal)
-        best_length, best_vulnerability = members.least("length"), members.least("vulnerability")
+        self.n_feasible.append(found.n_legal)
+        best_length, best_vulnerability = found.length, members.least("vulnerability")
         if np.isnan(best_length) or np.isnan(best_vulnerability):
             # Measured, where they are no objectives.
             paths = algorithm.problem.decode(members.X(np.arange(members.n_legal), algorithm.problem.n_var))
@@ -78,10 +79,9 @@ class ConvergenceRecorder(Callback):
             best_vulnerability = float(np.min(self._measures.vulnerability(paths), initial=np.inf))
         self.best_length.append(best_length)
         self.best_vulnerability.append(best_vulnerability)
-        front = members.F[members.front()]
         # Late generations often agree; one array then serves them all.
-        same = bool(self.fronts) and np.array_equal(self.fronts[-1], front)
-        self.fronts.append(self.fronts[-1] if same else front)
+        same = bool(self.fronts) and np.array_equal(self.fronts[-1], found.front)
+        self.fronts.append(self.fronts[-1] if same else found.front)
 
     @property
     def first_feasible(self) -> int | None:

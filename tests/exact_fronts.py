@@ -10,7 +10,7 @@ import numpy as np
 
 from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.objectives import Objective
-from pymoo_gridpath.testing.enumeration import STEPS, EnumeratedPath, enumerate_paths, non_dominated
+from pymoo_gridpath.testing.enumeration import RULES, STEPS, EnumeratedPath, enumerate_paths, non_dominated
 
 
 def random_grid(size, seed, density=0.2):
@@ -96,7 +96,7 @@ def random_case(seed):
     free = sorted(((int(x), int(y)) for y, x in np.argwhere(~occupied)), key=sum)
     if len(free) < 2:
         return None
-    grid = OccupancyGrid(occupied, corner_cutting=bool(random_state.integers(2)))
+    grid = OccupancyGrid(occupied, **RULES[int(random_state.integers(len(RULES)))])
     start, goal = random_state.permutation([free[0], free[-1]]).tolist()
     representation = str(random_state.choice(["cells", "integer", "absolute", "binary", "mixed"], p=[0.5, 0.2, 0.1, 0.1, 0.1]))
     return grid, start, goal, representation

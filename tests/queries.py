@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from pymoo_gridpath.errors import GridError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.paths.frame import MonotoneFrame
+from pymoo_gridpath.testing.enumeration import RULES
 
 # A spiral from the bottom left into the middle, which turns back along both axes.
 SPIRAL = OccupancyGrid(
@@ -32,7 +33,7 @@ def queries(draw, density=0.15):
     axis = draw(st.sampled_from(["auto", "x", "y"]))
     for x, y in (start, goal):
         occupied[y, x] = False
-    grid = OccupancyGrid(occupied, corner_cutting=draw(st.booleans()))
+    grid = OccupancyGrid(occupied, **draw(st.sampled_from(RULES)))
     try:
         MonotoneFrame(grid, start, goal, axis)
     except GridError:

@@ -139,10 +139,27 @@ def legality(tree) -> Found:
 
 
 def corners(tree) -> Found:
-    """What depends on whether corners of a grid may be cut, but for words."""
-    for node in nodes(tree, ast.If, ast.IfExp):
-        if says(node.test, r"\bgrid\.corner_cutting|self\._corner_cutting") and not says(node, "be cut"):
+    """What asks whether corners may be cut, but for words; what puts together the cells beside a diagonal step; the rule."""
+    for node in nodes(tree, ast.If, ast.IfExp, ast.BoolOp, ast.BinOp, ast.UnaryOp, ast.Compare, ast.FunctionDef):
+        if isinstance(node, ast.FunctionDef):
+            if defines(node, "may_pass|crossings"):
+                yield node
+            continue
+        operands = [getattr(node, name) for name in ("test", "left", "right", "operand") if hasattr(node, name)]
+        operands += getattr(node, "values", [])
+        asks = any(isinstance(one, ast.Attribute) and says(one, "[.]_?corner_cutting$") for one in operands)
+        if (asks and not says(node, "be cut")) or {"across", "up"} <= {_beside(one) for one in operands}:
             yield node
+
+
+def _beside(node: ast.AST) -> str | None:
+    """Return in which direction from the start of a step a field is looked at, if it is one of the two alone."""
+    while isinstance(node, ast.UnaryOp):
+        node = node.operand
+    if not isinstance(node, ast.Subscript | ast.Call):
+        return None
+    across, up = says(node, r"\bdx\b|\[:-1, 1:\]"), says(node, r"\bdy\b|\[1:, :-1\]")
+    return None if across == up else "across" if across else "up"
 
 
 def exit_codes(tree) -> Found:
@@ -167,10 +184,13 @@ def digest_of_a_grid(tree) -> Found:
 
 
 def records_of_convergence(tree) -> Found:
-    """Legal members of a population and the front of these."""
+    """Legal members of a population and the front of these, or what is recorded of both."""
+    recorded = (
+        r"interfering|nondominated|NonDominated|[.]F\[\w+[.]front\(\)|(?s:evaluator.n_eval.*n_legal|n_legal.*evaluator.n_eval)"
+    )
     for node in nodes(tree, ast.ClassDef):
         follows = any(says(base, "Callback|Output|Termination") for base in node.bases)
-        if defines(node, "Members") or (follows and says(node, "interfering|nondominated|NonDominated")):
+        if defines(node, "Members|Snapshot") or (follows and says(node, recorded)):
             yield node
 
 
@@ -190,6 +210,7 @@ RULES = {
     headings: {"neighbourhood", "plotting.labels"},
     # And whether a path of cells has to be mended, which is no question of limits.
     legality: {"problems.members", "representations.cell_sequence"},
+    corners: {"neighbourhood"},
     # A worker that nobody waits for any more ends itself.
     exit_codes: {"cli.arguments", "study.running.processes"},
     digest_of_a_grid: {"grid.cells"},
@@ -210,7 +231,17 @@ PLANTED = {
     ],
     exit_codes: ["sys.exit(3)", "raise SystemExit(1)", "EXIT_FAILED = 4"],
     digest_of_a_grid: ["def name(grid):\n    return hashlib.sha256(grid.occupied.tobytes())", "def grid_digest(grid): ..."],
+    corners: [
+        "if not grid.corner_cutting:\n    diagonal = diagonal & free",
+        "legal = free | (beside & ~self._grid.corner_cutting)",
+        "rising = free[:-1, 1:] & free[1:, :-1]",
+        "def open(free, x, y, dx, dy):\n    return free[y, x + dx] and free[y + dy, x]",
+        "count += occupied.take(cell + dx) + occupied.take(cell + dy * width)",
+        "cut = ~(shifted(free, dx, 0) & shifted(free, 0, dy))",
+    ],
     records_of_convergence: [
+        "class R(Callback):\n    def _update(self, a):\n        m = Members(a)\n        self.fronts.append(m.F[m.front()])",
+        "class R(Callback):\n    def _update(self, a):\n        self.rows += [(a.evaluator.n_eval, Members(a).n_legal)]",
         "class R(Callback):\n    def notify(self, a):\n        self.n = (a.pop.get('interfering_cells') == 0).sum()",
         "class Mine(callback.Callback):\n    def _update(self, a):\n        keep = moocore.is_nondominated(F)",
     ],
@@ -238,15 +269,8 @@ def test_commands_return_exit_codes_by_name():
     assert any(exit_codes_returned(ast.parse("def run():\n    return 2")))
 
 
-def test_corners_are_looked_at_once_for_each_form_of_a_path():
-    """As edges of a graph, as bits of steps, as cells in order, and as columns; the suites of `testing` hold them together."""
-    found = {name for name, tree in TREES.items() if any(corners(tree))}
-    assert found == {"grid.cells", "search.moves", "paths.base", "paths.column", "paths.frame"}
-    assert any(corners(ast.parse("if not grid.corner_cutting:\n    diagonal = diagonal & free")))
-
-
-def test_eleven_rules_are_counted():
-    assert len(RULES) == len(PLANTED) == 11
+def test_twelve_rules_are_counted():
+    assert len(RULES) == len(PLANTED) == 12
 
 
 # -- planners ---------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from numbers import Real
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,8 +11,12 @@ from numpy.typing import ArrayLike
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridError, GridPathError
+from pymoo_gridpath.neighbourhood import MOVES, ONE_SIDE
 
 Cell = tuple[int, int]
+
+#: Whether a diagonal step may touch an occupied cell: never, always, or one of the two beside it.
+CornerCutting = bool | Literal["one side"]
 
 
 def as_cells(name: str, cells: ArrayLike) -> np.ndarray:
@@ -31,6 +36,21 @@ def as_cells(name: str, cells: ArrayLike) -> np.ndarray:
     copy = array.astype(bool, order="C")
     copy.flags.writeable = False
     return copy
+
+
+def as_corner_cutting(value: Any, error: type[GridPathError] = GridError) -> CornerCutting:
+    """Return a rule for corners."""
+    if isinstance(value, str) and value == ONE_SIDE:
+        return "one side"
+    return checks.flag("corner_cutting", value, error, expected=f"True, False or {ONE_SIDE!r}")
+
+
+def as_moves(value: Any, error: type[GridPathError] = GridError) -> int:
+    """Return a number of steps from a cell."""
+    expected = " or ".join(map(str, MOVES))
+    if checks.whole("moves", value, expected=expected, error=error) not in MOVES:
+        raise error(f"moves is {shown(value)}, expected {expected}")
+    return int(value)
 
 
 def as_cell(role: str, cell) -> Cell:

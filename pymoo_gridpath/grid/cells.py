@@ -4,30 +4,28 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import ndimage, sparse
 
-from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridError
-from pymoo_gridpath.grid.arguments import as_cell, as_cells
+from pymoo_gridpath.grid.arguments import CornerCutting, as_cell, as_cells, as_corner_cutting, as_moves
 from pymoo_gridpath.grid.box import Box
-
-SQRT2 = math.sqrt(2.0)
+from pymoo_gridpath.neighbourhood import SQRT2, Neighbourhood, neighbourhood_of
 
 
 class Cells:
     """What an `OccupancyGrid` is before its cells have a place and a size; see there for the parameters."""
 
-    def __init__(self, occupied: ArrayLike, corner_cutting: bool, unknown: ArrayLike | None):
+    def __init__(self, occupied: ArrayLike, corner_cutting: CornerCutting, unknown: ArrayLike | None, moves: int):
         self._occupied = as_cells("occupied", occupied)
         self._unknown = None if unknown is None else as_cells("unknown", unknown)
         if self._unknown is not None and self._unknown.shape != self.shape:
             raise GridError(f"unknown has the shape {self._unknown.shape}, expected that of the grid, {self.shape}")
-        self._corner_cutting = checks.flag("corner_cutting", corner_cutting, GridError)
+        self._corner_cutting = as_corner_cutting(corner_cutting)
+        self._moves = as_moves(moves)
 
     @property
     def occupied(self) -> np.ndarray:
@@ -40,9 +38,19 @@ class Cells:
         return self._unknown
 
     @property
-    def corner_cutting(self) -> bool:
-        """Whether a diagonal step may touch an occupied cell."""
+    def corner_cutting(self) -> CornerCutting:
+        """Whether a diagonal step may touch an occupied cell: True, False, or "one side"."""
         return self._corner_cutting
+
+    @property
+    def moves(self) -> int:
+        """How many neighbours a cell has: 8, or 4 where paths take no diagonal steps."""
+        return self._moves
+
+    @functools.cached_property
+    def neighbourhood(self) -> Neighbourhood:
+        """The steps, as the rule by which all that deals with paths goes."""
+        return neighbourhood_of(self._moves, self._corner_cutting)
 
     @property
     def width(self) -> int:
@@ -87,10 +95,10 @@ class Cells:
     def regions(self) -> np.ndarray:
         """Label of the connected free region of each cell, shape (height, width); 0 where occupied.
 
-        Without corner cutting a diagonal step needs both cells beside it free, so regions are those of the four straight
-        moves; with it, those of all eight.
+        Where a diagonal step may pass between two occupied cells, regions are those of all eight moves. Elsewhere it joins but
+        what the four straight ones do.
         """
-        structure = np.ones((3, 3)) if self._corner_cutting else None
+        structure = np.ones((3, 3)) if self.neighbourhood.squeezes else None
         part = self._free_box.slices
         labels = np.zeros(self.shape, dtype=np.int32)
         labels[part] = ndimage.label(~self._occupied[part], structure=structure)[0]  # pyright: ignore
@@ -131,9 +139,9 @@ class Cells:
 
         add(index[:, :-1], index[:, 1:], free[:, :-1] & free[:, 1:], 1.0)
         add(index[:-1, :], index[1:, :], free[:-1, :] & free[1:, :], 1.0)
-        rising, falling = free[:-1, :-1] & free[1:, 1:], free[1:, :-1] & free[:-1, 1:]
-        if not self._corner_cutting:
-            rising, falling = rising & falling, rising & falling
+        (low_left, low_right), (high_left, high_right) = ((rows[:, :-1], rows[:, 1:]) for rows in (free[:-1], free[1:]))
+        rising = low_left & high_right & self.neighbourhood.may_pass(low_right, high_left)
+        falling = high_left & low_right & self.neighbourhood.may_pass(low_left, high_right)
         add(index[:-1, :-1], index[1:, 1:], rising, SQRT2)
         add(index[1:, :-1], index[:-1, 1:], falling, SQRT2)
         (a, b), length = np.concatenate(pairs, axis=1), np.concatenate(lengths)

@@ -16,10 +16,11 @@ from scipy.sparse import csgraph
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError
-from pymoo_gridpath.grid.arguments import Cell, as_cell, as_cells, as_pose, pairs
+from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_pose, pairs
 from pymoo_gridpath.grid.box import Box
 from pymoo_gridpath.grid.cells import Cells
 from pymoo_gridpath.grid.inflation import disc_of, grown_by
+from pymoo_gridpath.neighbourhood import steps_in_words
 
 # Numbers of cells that a float holds without gaps, with one bit to spare.
 _FARTHEST = 2.0**52
@@ -43,14 +44,17 @@ class OccupancyGrid(Cells):
         Side of a cell in metres.
     origin : (float, float) or (float, float, float), default (0, 0, 0)
         Pose of the bottom-left *corner* of cell (0, 0): x and y in metres and yaw in radians, as in ROS.
-    corner_cutting : bool, default False
+    corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell. False is the rule of MovingAI's benchmarks and of a robot with a
-        body: both cells beside the step must be free. True is the world of Ahmed and Deb (2013).
+        body: both cells beside the step must be free. True is the world of Ahmed and Deb (2013). With "one side" at most one of
+        the two may be occupied, as in the demo of PathFinding.js.
     name : str, default "grid"
         What figures and files call this grid.
     unknown : array_like of bool, shape (height, width), optional
         True where the map did not say whether a cell is free; ``occupied`` says what it was taken for. None, the default, where
         maps of this kind know no unknown cells. Copied as ``occupied``, and no part of what makes two grids equal.
+    moves : {8, 4}, default 8
+        How many neighbours a cell has. With 4 there are no diagonal steps, and ``corner_cutting`` makes no difference.
 
     Raises
     ------
@@ -74,11 +78,12 @@ class OccupancyGrid(Cells):
         occupied: ArrayLike,
         resolution: float = 1.0,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
-        corner_cutting: bool = False,
+        corner_cutting: CornerCutting = False,
         name: str = "grid",
         unknown: ArrayLike | None = None,
+        moves: int = 8,
     ):
-        super().__init__(occupied, corner_cutting, unknown)
+        super().__init__(occupied, corner_cutting, unknown, moves)
         self._resolution = checks.number(
             "resolution", resolution, 0.0, above=True, expected="a positive number of metres per cell", error=GridError
         )
@@ -118,6 +123,7 @@ class OccupancyGrid(Cells):
             "corner_cutting": self._corner_cutting,
             "name": self._name,
             "unknown": self._unknown if changes.get("occupied", self._occupied).shape == self.shape else None,
+            "moves": self._moves,
         }
         unknown = set(changes) - set(arguments)
         if unknown:
@@ -133,18 +139,17 @@ class OccupancyGrid(Cells):
         return hash((self._key(), self._occupied.tobytes()))
 
     def _key(self):
-        return self.shape, self._resolution, self._origin, self._corner_cutting, self._name
+        return self.shape, self._resolution, self._origin, self._corner_cutting, self._name, self._moves
 
     def __reduce__(self):
         # Through the constructor, because pickling an array drops its read-only flag.
         arguments = self._occupied, self._resolution, self._origin, self._corner_cutting, self._name, self._unknown
-        return OccupancyGrid, arguments
+        return OccupancyGrid, (*arguments, self._moves)
 
     def __repr__(self) -> str:
-        rule = "may be cut" if self._corner_cutting else "may not be cut"
         return (
             f"<OccupancyGrid {self._name!r}: {self.width} x {self.height} cells of {self._resolution:g} m, "
-            f"{self.n_occupied} occupied, corners {rule}>"
+            f"{self.n_occupied} occupied, {steps_in_words(self._moves, self._corner_cutting)}>"
         )
 
     # -- cells --------------------------------------------------------------------------------------------------------
@@ -225,7 +230,7 @@ class OccupancyGrid(Cells):
         GridError
             If either is not a free cell of the grid, or both are the same cell.
         UnreachableError
-            If no path joins them under the corner rule of the grid.
+            If no path joins them by the steps of the grid.
         """
         start, goal = self.check_cell(start, "start", goal), self.check_cell(goal, "goal", start)
         if start == goal:

@@ -29,7 +29,7 @@ class Paths(ABC):
     two cells that are no neighbours, a *jump*, is as long as the shortest way between them on an empty grid: with ``a >= b``
     the distances along the two axes, b diagonal and ``a - b`` straight steps. It counts as ``a - 1`` interfering cells, those
     that it leaves out, and its heading is that of the signs of its dx and dy: straight along an axis, or else diagonal. Only
-    cells in the sequence are visited.
+    cells in the sequence are visited. On a grid without diagonal steps one leaves out a cell, and is as long as elsewhere.
 
     Attributes
     ----------
@@ -150,18 +150,20 @@ class Paths(ABC):
     def interfering_cells(self) -> np.ndarray:
         """Number of occupied cells that each path crosses, int, shape (N,); a legal path has 0, and no other has.
 
-        Where the grid forbids to cut corners, an occupied cell beside a diagonal step counts as crossed by that step. A jump
-        counts one for each cell that it leaves out.
+        Where the grid forbids to cut corners, an occupied cell beside a diagonal step counts as crossed by that step; where it
+        allows to do so on one side, both do if both are occupied. A jump counts one for each cell that it leaves out, and so
+        does a diagonal step where there are none.
         """
         occupied, cells, (dx, dy) = self.grid.occupied.ravel(), self.sequences.cells, self._steps
         long, short = self._reach
         count = np.maximum(long - 1, 0)
         count += occupied.take(cells)
-        if not self.grid.corner_cutting:
+        neighbourhood = self.grid.neighbourhood
+        if neighbourhood.restricts:
             diagonal = np.flatnonzero((long == 1) & (short == 1))
             cell = cells[diagonal]
-            count[diagonal] += occupied.take(cell + dx[diagonal])
-            count[diagonal] += occupied.take(cell + dy[diagonal] * self.grid.width)
+            across, up = cell + dx[diagonal], cell + dy[diagonal] * self.grid.width
+            count[diagonal] += neighbourhood.crossings(occupied.take(across), occupied.take(up))
         return self._sum(count)
 
     def cells(self, index: int) -> np.ndarray:

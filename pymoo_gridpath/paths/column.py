@@ -57,8 +57,8 @@ class ColumnPaths(Paths):
         """Return the paths that leave columns 0 to n_columns - 2 at the given rows and climb as soon as they can.
 
         Each step to the next column goes one row towards the row where that column is left (for the last column: the
-        goal's row), diagonally, and the rest of the climb is made in that column. Where the grid forbids to cut a corner, a
-        diagonal that would cut one is taken as a horizontal step instead.
+        goal's row), diagonally, and the rest of the climb is made in that column. Where such a diagonal is not legal, for the
+        corners that it passes or on a grid without diagonal steps, it is taken as a horizontal step instead.
 
         Parameters
         ----------
@@ -75,7 +75,7 @@ class ColumnPaths(Paths):
         leave[:, :-1] = exit_rows
         leave[:, -1] = frame.goal_row
         step = np.sign(leave[:, 1:] - leave[:, :-1])
-        if not frame.grid.corner_cutting:
+        if frame.grid.neighbourhood.restricts:
             step *= frame._flanks_at(leave[:, :-1], step) == 0
         enter = np.empty_like(leave)
         enter[:, 0] = frame.start_row
@@ -157,10 +157,10 @@ class ColumnPaths(Paths):
     def interfering_cells(self) -> np.ndarray:
         """Number of occupied cells that each path crosses, int, shape (N,); a legal path has 0.
 
-        Where the grid forbids to cut corners, an occupied cell beside a diagonal step counts as crossed by that step.
+        Steps to the next column count as those of `Paths` do.
         """
         count = self.total(self.frame.occupied_sums)
-        if not self.frame.grid.corner_cutting:
+        if self.grid.neighbourhood.restricts:
             count += self.frame._flanks_at(self.leave[:, :-1], self._step).sum(axis=1)
         return count
 

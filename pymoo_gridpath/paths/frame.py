@@ -133,14 +133,15 @@ class MonotoneFrame:
 
     @functools.cached_property
     def flanks(self) -> np.ndarray:
-        """Number of occupied cells beside each step to the next column, int8, shape (3, n_columns - 1, n_rows).
+        """Number of cells that each step to the next column crosses beside it, int8, shape (3, n_columns - 1, n_rows).
 
-        Entry [1 + s, c, r] belongs to the step from (c, r) to (c + 1, r + s), s in -1, 0, 1; it is 0 for s = 0.
+        Entry [1 + s, c, r] belongs to the step from (c, r) to (c + 1, r + s), s in -1, 0, 1; it is 0 for s = 0. Where corners
+        may be cut no step crosses any.
         """
-        occupied = self.occupied.astype(np.int8)
+        occupied, crossings = self.occupied, self.grid.neighbourhood.crossings
         flanks = np.zeros((3, self.n_columns - 1, self.n_rows), dtype=np.int8)
-        flanks[2, :, :-1] = occupied[:-1, 1:] + occupied[1:, :-1]
-        flanks[0, :, 1:] = occupied[:-1, :-1] + occupied[1:, 1:]
+        flanks[2, :, :-1] = crossings(occupied[:-1, 1:], occupied[1:, :-1])
+        flanks[0, :, 1:] = crossings(occupied[:-1, :-1], occupied[1:, 1:])
         return flanks
 
     @functools.cached_property
@@ -196,7 +197,7 @@ class MonotoneFrame:
             if column == self.n_columns - 1:
                 break
             rising, falling = reached[:-1], reached[1:]
-            if not self.grid.corner_cutting:
+            if self.grid.neighbourhood.restricts:
                 rising = rising & (self.flanks[2, column, :-1] == 0)
                 falling = falling & (self.flanks[0, column, 1:] == 0)
             reached = reached.copy()

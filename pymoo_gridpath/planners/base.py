@@ -62,6 +62,8 @@ class Planner(Algorithm, ABC):
     turns_back : bool
         Class attribute: whether its paths may turn back along every axis, so that it refuses codings of paths that never do.
         Default False.
+    goes_diagonally : bool
+        Class attribute: whether it plans by diagonal steps, so that it refuses grids without any. Default False.
     takes_operators, takes_pop_size : bool
         Class attributes: whether its constructor takes ``operators`` and ``pop_size``, as `make_algorithm` does. Default False.
     takes_generations : bool
@@ -72,7 +74,8 @@ class Planner(Algorithm, ABC):
     Raises
     ------
     CapabilityError
-        If an argument is unknown; when the run begins, if the paths may turn back and the coding knows none that do.
+        If an argument is unknown; when the run begins, if the paths may turn back and the coding knows none that do, or if it
+        plans by diagonal steps and the grid has none.
     GridPathError
         When the run begins, if the problem is no path problem; when the paths are there, if one is not legal.
 
@@ -95,6 +98,7 @@ class Planner(Algorithm, ABC):
     deterministic: ClassVar[bool] = True
     reference: ClassVar[bool] = False
     turns_back: ClassVar[bool] = False
+    goes_diagonally: ClassVar[bool] = False
     takes_operators: ClassVar[bool] = False
     takes_pop_size: ClassVar[bool] = False
     takes_generations: ClassVar[bool] = False
@@ -115,6 +119,11 @@ class Planner(Algorithm, ABC):
     @classmethod
     def refuse(cls, problem) -> None:
         """Raise a CapabilityError if the planner cannot plan for a problem."""
+        if cls.goes_diagonally and not problem.grid.neighbourhood.diagonal:
+            raise CapabilityError(
+                f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(problem.grid.name)} has none; give the "
+                "grid moves=8"
+            )
         if cls.turns_back and representation_of(problem).monotone:
             raise CapabilityError(
                 f"{cls.__name__} plans paths that may turn back, which the {problem.representation.name} representation cannot "

@@ -9,6 +9,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import counted
+from pymoo_gridpath.neighbourhood import Neighbourhood
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.planners.base import Plan, Planner, settled
 from pymoo_gridpath.registry import register
@@ -60,13 +61,13 @@ class CountedSearch(Planner):
     """
 
     @abstractmethod
-    def _search(self, moves: Moves, start: int, goal: int, corner_cutting: bool) -> Found:
+    def _search(self, moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood) -> Found:
         """Return the path from a cell to another, by their indices, and what was looked at."""
 
     def plan(self, problem) -> Plan:
         moves = representation_of(problem).moves
         ends = moves.index(problem.start), moves.index(problem.goal)
-        found = self._search(moves, *ends, problem.grid.corner_cutting)
+        found = self._search(moves, *ends, problem.grid.neighbourhood)
         self.found = CountedPath(moves.cells(found.path), *found[1:])
         path = Sequences(found.path, np.array([0, len(found.path)] if len(found.path) else [0]))
         what = "found a path" if len(found.path) else "found no path"
@@ -128,7 +129,7 @@ class AStar(CountedSearch):
         super().__init__(**kwargs)
         self.heuristic = _heuristic(heuristic)
 
-    def _search(self, moves: Moves, start: int, goal: int, corner_cutting: bool) -> Found:
+    def _search(self, moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood) -> Found:
         return best_first(moves, start, goal, self.heuristic)
 
 
@@ -158,7 +159,7 @@ class Dijkstra(CountedSearch):
 
     name = "dijkstra"
 
-    def _search(self, moves: Moves, start: int, goal: int, corner_cutting: bool) -> Found:
+    def _search(self, moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood) -> Found:
         return best_first(moves, start, goal)
 
 
@@ -186,7 +187,7 @@ class BreadthFirst(CountedSearch):
 
     name = "breadth-first"
 
-    def _search(self, moves: Moves, start: int, goal: int, corner_cutting: bool) -> Found:
+    def _search(self, moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood) -> Found:
         return breadth_first(moves, start, goal)
 
 
@@ -220,7 +221,7 @@ class BestFirst(CountedSearch):
         super().__init__(**kwargs)
         self.heuristic = _heuristic(heuristic)
 
-    def _search(self, moves: Moves, start: int, goal: int, corner_cutting: bool) -> Found:
+    def _search(self, moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood) -> Found:
         return best_first(moves, start, goal, self.heuristic, greedy=True)
 
 
@@ -261,8 +262,8 @@ class JumpPointSearch(CountedSearch):
         super().__init__(**kwargs)
         self.heuristic = _heuristic(heuristic)
 
-    def _search(self, moves: Moves, start: int, goal: int, corner_cutting: bool) -> Found:
-        return jump_points(moves, start, goal, corner_cutting, self.heuristic)
+    def _search(self, moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood) -> Found:
+        return jump_points(moves, start, goal, neighbourhood, self.heuristic)
 
 
 @register
@@ -290,5 +291,5 @@ class OrthogonalJumpPointSearch(CountedSearch):
     name = "orthogonal-jps"
     turns_back = True
 
-    def _search(self, moves: Moves, start: int, goal: int, corner_cutting: bool) -> Found:
+    def _search(self, moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood) -> Found:
         return orthogonal_jump_points(moves, start, goal)

@@ -95,7 +95,8 @@ class QuadrantSelection(Planner):
     Raises
     ------
     CapabilityError
-        If an argument is unknown; when the run begins, if the coding knows only paths that never turn back.
+        If an argument is unknown; when the run begins, if the coding knows only paths that never turn back, or the grid has no
+        diagonal steps.
     GridPathError
         If a number is not positive, alternatives is larger than max_paths, or max_paths larger than 1,000.
 
@@ -128,6 +129,7 @@ class QuadrantSelection(Planner):
 
     name = "qsa"
     turns_back = True
+    goes_diagonally = True
 
     def __init__(
         self,

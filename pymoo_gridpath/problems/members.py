@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import moocore
 import numpy as np
 
@@ -79,3 +81,31 @@ def are_legal(interfering_cells, violation=None) -> np.ndarray:
     """
     legal = np.asarray(interfering_cells) == 0
     return legal if violation is None else legal & (np.asarray(violation) <= 0)
+
+
+class Snapshot(NamedTuple):
+    """How far a search has come, as all that records it does so.
+
+    Attributes
+    ----------
+    n_eval : int
+        Evaluations so far.
+    n_legal, n_members : int
+        Members of the population that are legal paths, and all.
+    length : float
+        Of the shortest of the legal ones, ``inf`` without any; NaN if the problem has no such objective.
+    front : numpy.ndarray, shape (K, n_obj)
+        Their non-dominated objectives, each point once.
+    """
+
+    n_eval: int
+    n_legal: int
+    n_members: int
+    length: float
+    front: np.ndarray
+
+
+def snapshot(algorithm, members: Members) -> Snapshot:
+    """Return how far an algorithm has come with these members."""
+    n_eval, front = int(algorithm.evaluator.n_eval), members.F[members.front()]
+    return Snapshot(n_eval, members.n_legal, members.n_members, members.least("length"), front)

@@ -7,7 +7,8 @@ from typing import Any
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
+from pymoo_gridpath.grid.arguments import as_corner_cutting
 from pymoo_gridpath.paths.frame import Axis, check_axis
 from pymoo_gridpath.representations.absolute import AbsoluteRepresentation
 from pymoo_gridpath.representations.base import REPRESENTATIONS, Representation
@@ -20,25 +21,25 @@ for _cls in (IntegerRepresentation, BinaryRepresentation, MixedRepresentation, A
     REPRESENTATIONS.register(_cls)
 
 
-def default_representation(corner_cutting: bool, axis: Axis = "auto") -> str:
+def default_representation(corner_cutting: CornerCutting, axis: Axis = "auto") -> str:
     """Return the name of the representation of a query for which none is given.
 
     Parameters
     ----------
-    corner_cutting : bool
-        Whether corners may be cut on the grid.
+    corner_cutting : bool or "one side"
+        How corners may be cut on the grid.
     axis : {"auto", "x", "y"}, default "auto"
 
     Returns
     -------
     str
-        "cells", which codes every path; "integer", the paper's, where corners may be cut, which is the world of the paper, or
+        "cells", which codes every path; "integer", the paper's, where all corners may be cut, as in the world of the paper, or
         where an axis is given, along which paths are to advance.
 
     Raises
     ------
     GridPathError
-        If corner_cutting is no truth value, or there is no such axis.
+        If there is no such rule for corners, or no such axis.
 
     Examples
     --------
@@ -46,7 +47,8 @@ def default_representation(corner_cutting: bool, axis: Axis = "auto") -> str:
     ('cells', 'integer')
     """
     check_axis(axis)
-    return IntegerRepresentation.name if checks.flag("corner_cutting", corner_cutting) or axis != "auto" else CellSequence.name
+    of_the_paper = as_corner_cutting(corner_cutting, GridPathError) is True
+    return IntegerRepresentation.name if of_the_paper or axis != "auto" else CellSequence.name
 
 
 def make_representation(

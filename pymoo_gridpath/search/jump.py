@@ -11,17 +11,18 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.neighbourhood import Neighbourhood
 from pymoo_gridpath.search.counted import DIAGONAL, HEURISTICS, STRAIGHT, Found, estimate
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.shortest import grown
 from pymoo_gridpath.search.sight import towards
 
-# The rules by which a jump ends: the two rules for corners, and straight steps alone.
-_CUTTING, _NOT_CUTTING, _ORTHOGONAL = np.int64(0), np.int64(1), np.int64(2)
+# The rules by which a jump ends: diagonal steps past an occupied cell, none such, and straight steps alone.
+_ROUNDING, _KEEPING, _ORTHOGONAL = np.int64(0), np.int64(1), np.int64(2)
 
 
-def jump_points(moves: Moves, start: int, goal: int, corner_cutting: bool, heuristic: str = "octile") -> Found:
+def jump_points(moves: Moves, start: int, goal: int, neighbourhood: Neighbourhood, heuristic: str = "octile") -> Found:
     """Search for a shortest path by jumps.
 
     Parameters
@@ -29,8 +30,8 @@ def jump_points(moves: Moves, start: int, goal: int, corner_cutting: bool, heuri
     moves : Moves
         With all eight headings.
     start, goal : int
-    corner_cutting : bool
-        The rule of the grid.
+    neighbourhood : Neighbourhood
+        The steps of the grid. Without diagonal ones jumps are those of `orthogonal_jump_points`.
     heuristic : str
         As of `best_first`; with "manhattan" the path need not be a shortest one.
 
@@ -39,7 +40,8 @@ def jump_points(moves: Moves, start: int, goal: int, corner_cutting: bool, heuri
     D. Harabor and A. Grastien, "Online graph pruning for pathfinding on grid maps", AAAI 2011; for corners that may not be cut,
     the same authors, "Improving jump point search", ICAPS 2014.
     """
-    return _search(moves, start, goal, _CUTTING if corner_cutting else _NOT_CUTTING, HEURISTICS[heuristic])
+    rule = _ORTHOGONAL if not neighbourhood.diagonal else _ROUNDING if neighbourhood.rounds else _KEEPING
+    return _search(moves, start, goal, rule, HEURISTICS[heuristic])
 
 
 def orthogonal_jump_points(moves: Moves, start: int, goal: int) -> Found:
@@ -86,10 +88,10 @@ def forced_headings(legal, offsets, cell, m, rule):
             if m & 3 == 0 and _has(steps, m + 2 * side) and not _has(legal[cell - offsets[m]], m + 2 * side):
                 found |= 1 << ((m + 2 * side) & 7)
         elif m & 1:
-            # Only where a corner may be cut can the cell behind be occupied.
-            if rule == _CUTTING and not _has(steps, m + 3 * side) and _has(steps, m + 2 * side):
+            # Only where one occupied cell may be passed can the cell behind be such.
+            if rule == _ROUNDING and not _has(steps, m + 3 * side) and _has(steps, m + 2 * side):
                 found |= 1 << ((m + 2 * side) & 7)
-        elif rule == _CUTTING:
+        elif rule == _ROUNDING:
             if not _has(steps, m + 2 * side) and _has(steps, m + side):
                 found |= 1 << ((m + side) & 7)
         elif _has(steps, m + 2 * side) and not _has(steps, m + 3 * side):

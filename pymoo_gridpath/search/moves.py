@@ -21,15 +21,15 @@ def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def uncut(grid: OccupancyGrid, free: np.ndarray) -> np.ndarray:
-    """Return the steps that cut no corner that the grid forbids to cut, bits as in `Moves.legal`, uint8, shape (h, w).
+    """Return the steps that pass no corner that the grid forbids to cut, bits as in `Moves.legal`, uint8, shape (h, w).
 
     ``free`` says which cells are free, with a rim of those around them, bool, shape (h + 2, w + 2).
     """
     bits = np.full((free.shape[0] - 2, free.shape[1] - 2), 255, dtype=np.uint8)
-    if not grid.corner_cutting:
+    if grid.neighbourhood.restricts:
         for m in np.flatnonzero(DIAGONAL):
             dx, dy = HEADINGS[m]
-            cut = ~(_shifted(free, dx, 0) & _shifted(free, 0, dy))
+            cut = ~grid.neighbourhood.may_pass(_shifted(free, dx, 0), _shifted(free, 0, dy))
             bits ^= cut.astype(np.uint8) << np.uint8(m)
     return bits
 
@@ -57,6 +57,8 @@ class Moves:
     box : Box
     width, height : int
         Of the box.
+    diagonal : bool
+        Whether the grid has diagonal steps at all.
     legal : numpy.ndarray of uint8, shape (n_cells,)
         Bit m is set where the step along heading m stays on the grid, ends in a free cell and cuts no corner that the grid
         forbids to cut. No bit is set in occupied cells.
@@ -89,6 +91,7 @@ class Moves:
             legal |= possible.astype(np.uint8) << np.uint8(m)
         legal &= uncut(grid, free)
         self.legal = legal.ravel()
+        self.diagonal = grid.neighbourhood.diagonal
         self.offsets = (HEADINGS[:, 1] * self.width + HEADINGS[:, 0]).astype(np.int64)
 
     @property

@@ -93,7 +93,7 @@ def branches(moves: Moves, grid: OccupancyGrid, start: int, goal: int, strict: b
         The letter of the paper: whether a branch has but the cell to one side of the blocked step to go to, and follows
         nothing. It ends nowhere if that step is not legal.
     """
-    found = _branch(moves.legal, moves.offsets, moves.width, start, goal, grid.corner_cutting, strict)
+    found = _branch(moves.legal, moves.offsets, moves.width, start, goal, grid.neighbourhood.rounds, strict)
     hits, to, cells, ends, n_probes, seen = found
     measures, first, last = measure(moves.legal, moves.offsets, cells, ends)
     return Branches(hits, to, cells, ends, measures, first, last, int(n_probes), *_counted(seen, grid, moves))
@@ -106,7 +106,7 @@ def _counted(seen: np.ndarray, grid: OccupancyGrid, moves: Moves) -> tuple[int, 
 
 
 @kernel
-def _branch(legal, offsets, width, start, goal, corner_cutting, strict):
+def _branch(legal, offsets, width, start, goal, rounds, strict):
     number = np.full(len(legal), -1, dtype=np.int64)
     # The last hit on whose unhindered way to the goal each cell lies.
     way = np.full(len(legal), -1, dtype=np.int64)
@@ -135,7 +135,7 @@ def _branch(legal, offsets, width, start, goal, corner_cutting, strict):
                 if side < 0:
                     mark_way(offsets, width, path[0], goal, way, hit)
                 path, length, led_on = _follow(
-                    legal, offsets, width, goal, corner_cutting, hit, blocked, side, way, tested, counts, path
+                    legal, offsets, width, goal, rounds, hit, blocked, side, way, tested, counts, path
                 )
         end = NOWHERE
         if led_on:
@@ -227,7 +227,7 @@ def _run(legal, offsets, width, goal, tested, counts, path, n):
 
 
 @kernel
-def _follow(legal, offsets, width, goal, corner_cutting, hit, blocked, side, way, tested, counts, path):
+def _follow(legal, offsets, width, goal, rounds, hit, blocked, side, way, tested, counts, path):
     """Add the cells around an obstacle to the first of a path; return it, its length, and whether it may leave there."""
     height = len(legal) // width
     cell, n = path[0], 1
@@ -265,7 +265,7 @@ def _follow(legal, offsets, width, goal, corner_cutting, hit, blocked, side, way
         if onto >= 0:
             path[n] = cell + offsets[onto]
             return path, n + 1, True
-        # Back towards the obstacle: where a corner may be cut, what lies behind a straight step is known to be occupied.
-        back = 1 if corner_cutting and m % 2 == 0 else 2
+        # Back towards the obstacle: where one occupied cell may be passed, what lies behind a straight step is known to be one.
+        back = 1 if rounds and m % 2 == 0 else 2
         m = (m - back * side) & 7
     return path, n, False

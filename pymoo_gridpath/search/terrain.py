@@ -46,6 +46,8 @@ class Terrain(NamedTuple):
     straight, diagonal : int
         Cost of a step in term 0, 1 or more. Where the best paths of the terms differ a lot, these numbers may be so small that
         by them another path is the shortest than on a `plain_terrain`.
+    square : bool
+        Whether the grid has no diagonal steps.
     fields : numpy.ndarray of int64, shape (n_cells, K - 1)
         Cost of entering each cell in the other terms.
     bounds : numpy.ndarray of int64, shape (n_cells, 2 * K)
@@ -60,6 +62,7 @@ class Terrain(NamedTuple):
     goal: int
     straight: int
     diagonal: int
+    square: bool
     fields: np.ndarray
     bounds: np.ndarray
 
@@ -117,7 +120,16 @@ def make_terrain(moves: Moves, start: int, goal: int, fields: Sequence[np.ndarra
     bounds[~useful] = UNREACHABLE
     stacked = np.stack(fields_, axis=1) if fields_ else np.zeros((moves.n_cells, 0), dtype=np.int64)
     return Terrain(
-        moves.within(useful).legal, moves.offsets, moves.width, int(start), int(goal), straight, diagonal, stacked, bounds
+        moves.within(useful).legal,
+        moves.offsets,
+        moves.width,
+        int(start),
+        int(goal),
+        straight,
+        diagonal,
+        not moves.diagonal,
+        stacked,
+        bounds,
     )
 
 

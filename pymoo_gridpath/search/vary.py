@@ -27,11 +27,12 @@ class Changes(NamedTuple):
     ----------
     way : numpy.ndarray of int64, shape (N,)
         `REROUTE` takes the cheapest route between the two ends of the stretch; `STRAIGHTEN` the way with one turn,
-        a diagonal and a straight run; `SHIFT` moves what lies between the ends one cell along a heading.
+        a diagonal and a straight run, or two straight ones where there are no diagonal steps; `SHIFT` moves what lies between
+        the ends one cell along a heading.
     begin, end : numpy.ndarray of int64, shape (N,)
         Positions in the path of the two ends of the stretch, which stay.
     heading : numpy.ndarray of int64, shape (N,)
-        Where to shift to, 0 to 7; even, where to straighten, for the diagonal run first.
+        Where to shift to, 0 to 7; even, where to straighten, for the diagonal run first, or that along x.
     weights : numpy.ndarray of int64, shape (N, K)
         See `find_route`, as for ``noise``.
     noise : numpy.ndarray of int64, shape (N, 3)
@@ -103,7 +104,12 @@ def _straight(terrain, source, target, diagonal_first, path, n):
         while cell != target:
             dx, dy = target % width - cell % width, target // width - cell // width
             sx, sy = (1 if dx > 0 else 0) - (1 if dx < 0 else 0), (1 if dy > 0 else 0) - (1 if dy < 0 else 0)
-            if diagonal_first == (order == 1) and abs(dx) != abs(dy):
+            if terrain.square:
+                if diagonal_first == (order == 0) and dx != 0:
+                    sy = 0
+                elif dy != 0:
+                    sx = 0
+            elif diagonal_first == (order == 1) and abs(dx) != abs(dy):
                 # The straight run along the longer axis comes first.
                 if abs(dx) > abs(dy):
                     sy = 0

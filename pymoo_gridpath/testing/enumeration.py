@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,10 @@ from pymoo_gridpath.grid import Cell, OccupancyGrid
 
 #: The step (dx, dy) of each heading.
 STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
+
+#: The rules for steps that a grid may have, as arguments: those for corners, and no diagonal steps.
+CORNER_RULES: tuple[dict[str, Any], ...] = tuple({"corner_cutting": rule} for rule in (False, True, "one side"))
+RULES: tuple[dict[str, Any], ...] = (*CORNER_RULES, {"moves": 4})
 
 
 class EnumeratedPath(NamedTuple):
@@ -22,8 +26,10 @@ class EnumeratedPath(NamedTuple):
     turn: int
 
 
-def random_query(rng: np.random.Generator, least: int, most: int, density: float = 0.5) -> tuple[OccupancyGrid, Cell, Cell]:
-    """Return a random grid, of either corner rule, and a query on it that has a path.
+def random_query(
+    rng: np.random.Generator, least: int, most: int, density: float = 0.5, rules: Sequence[Mapping[str, Any]] = RULES
+) -> tuple[OccupancyGrid, Cell, Cell]:
+    """Return a random grid, of any of some rules for steps, and a query on it that has a path.
 
     Parameters
     ----------
@@ -32,10 +38,12 @@ def random_query(rng: np.random.Generator, least: int, most: int, density: float
         Cells a side.
     density : float
         The largest share of occupied cells; it is drawn as well.
+    rules : sequence of mapping
+        Arguments of a grid, such as one of `RULES`; by default any of these.
     """
     while True:
         occupied = rng.random(rng.integers(least, most + 1, 2)) < rng.uniform(0, density)
-        query = query_on(OccupancyGrid(occupied, corner_cutting=bool(rng.integers(2))), rng)
+        query = query_on(OccupancyGrid(occupied, **rules[int(rng.integers(len(rules)))]), rng)
         if query is not None:
             return query
 
@@ -58,8 +66,10 @@ def legal_steps(grid: OccupancyGrid, cell: Cell, headings: Iterable[int] = range
     x, y = cell
     for m in headings:
         dx, dy = STEPS[m]
-        corners_free = grid.corner_cutting or (grid.is_free((x + dx, y)) and grid.is_free((x, y + dy)))
-        if grid.is_free((x + dx, y + dy)) and (dx == 0 or dy == 0 or corners_free):
+        beside = [grid.is_free((x + dx, y)), grid.is_free((x, y + dy))]
+        rule = {True: True, False: all(beside), "one side": any(beside)}
+        diagonal = grid.moves == 8 and rule[grid.corner_cutting]
+        if grid.is_free((x + dx, y + dy)) and (dx == 0 or dy == 0 or diagonal):
             yield m, (x + dx, y + dy)
 
 

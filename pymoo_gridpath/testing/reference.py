@@ -22,13 +22,22 @@ def turn(cells):
 
 
 def interfering_cells(cells, grid):
-    """Occupied visited cells and, where corners may not be cut, occupied cells beside each diagonal step."""
+    """Occupied visited cells, and what each diagonal step crosses beside it."""
     count = sum(bool(grid.occupied[y, x]) for x, y in cells)
-    if not grid.corner_cutting:
-        for (xa, ya), (xb, yb) in itertools.pairwise(cells):
-            if xa != xb and ya != yb:
-                count += bool(grid.occupied[ya, xb]) + bool(grid.occupied[yb, xa])
+    for a, b in itertools.pairwise(cells):
+        if a[0] != b[0] and a[1] != b[1]:
+            count += crossed_beside(a, b, grid)
     return count
+
+
+def crossed_beside(a, b, grid):
+    """Number of cells that a diagonal step crosses besides its ends; the one that it leaves out, where there are none such."""
+    if grid.moves == 4:
+        return 1
+    beside = int(grid.occupied[a[1], b[0]]) + int(grid.occupied[b[1], a[0]])
+    if grid.corner_cutting == "one side":
+        return beside if beside == 2 else 0
+    return 0 if grid.corner_cutting else beside
 
 
 def potential(grid, variance=0.5):
@@ -89,9 +98,10 @@ def broken_cells(cells, grid):
     count = sum(bool(grid.occupied[y, x]) for x, y in cells)
     for a, b in itertools.pairwise(cells):
         long, short = distances(a, b)
-        count += long - 1
-        if long == short == 1 and not grid.corner_cutting:
-            count += bool(grid.occupied[a[1], b[0]]) + bool(grid.occupied[b[1], a[0]])
+        if long == short == 1:
+            count += crossed_beside(a, b, grid)
+        else:
+            count += long - 1
     return count
 
 

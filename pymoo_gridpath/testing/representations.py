@@ -36,11 +36,11 @@ def _room_in_the_dark() -> OccupancyGrid:
     return OccupancyGrid(occupied)
 
 
-def _dense(seed: int, corner_cutting: bool) -> OccupancyGrid:
+def _dense(seed: int, **steps: Any) -> OccupancyGrid:
     """Return a grid with many obstacles, and a free bottom row and right column."""
     occupied = np.random.default_rng(seed).random((6, 9)) < 0.35
     occupied[0], occupied[:, -1] = False, False
-    return OccupancyGrid(occupied, corner_cutting=corner_cutting)
+    return OccupancyGrid(occupied, **steps)
 
 
 _QUERIES: dict[str, Query] = {
@@ -49,9 +49,11 @@ _QUERIES: dict[str, Query] = {
     "tall, downwards": (OccupancyGrid(np.zeros((9, 3))), (1, 8), (2, 0)),
     "one row": (OccupancyGrid(np.zeros((1, 5))), (4, 0), (1, 0)),
     "one column": (OccupancyGrid(np.zeros((5, 1)), corner_cutting=True), (0, 0), (0, 4)),
-    "dense": (_dense(1, False), (0, 0), (8, 5)),
-    "dense, corners cut": (_dense(1, True), (0, 0), (8, 5)),
-    "dense, back": (_dense(2, False), (8, 5), (0, 0)),
+    "dense": (_dense(1), (0, 0), (8, 5)),
+    "dense, corners cut": (_dense(1, corner_cutting=True), (0, 0), (8, 5)),
+    "dense, corners cut on one side": (_dense(1, corner_cutting="one side"), (0, 0), (8, 5)),
+    "dense, four moves": (_dense(1, moves=4), (0, 0), (8, 5)),
+    "dense, back": (_dense(2), (8, 5), (0, 0)),
     "a room in the dark": (_room_in_the_dark(), (200, 100), (208, 105)),
 }
 

@@ -26,7 +26,7 @@ from pymoo_gridpath.cli import main
 from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.search.counted import best_first, breadth_first
-from pymoo_gridpath.search.jump import _CUTTING, _NOT_CUTTING, jump_points, kept_headings, orthogonal_jump_points
+from pymoo_gridpath.search.jump import _KEEPING, _ROUNDING, jump_points, kept_headings, orthogonal_jump_points
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.study import AlgorithmSpec, ProblemSpec, Study, run_study
 from pymoo_gridpath.testing import PlannerSuite
@@ -100,7 +100,7 @@ def test_paths_are_as_short_as_promised():
         ends = moves.index(start), moves.index(goal)
         shortest = grid.shortest_length(start, goal)
         exact = [best_first(moves, *ends, heuristic) for heuristic in ("none", *CONSISTENT)]
-        exact += [jump_points(moves, *ends, grid.corner_cutting, heuristic) for heuristic in ("none", *CONSISTENT)]
+        exact += [jump_points(moves, *ends, grid.neighbourhood, heuristic) for heuristic in ("none", *CONSISTENT)]
         loose = [best_first(moves, *ends, "manhattan"), best_first(moves, *ends, "octile", greedy=True)]
         fewest, straight = breadth_first(moves, *ends), orthogonal_jump_points(moves, *ends)
         for found in (*exact, *loose, fewest):
@@ -142,10 +142,10 @@ def test_what_is_closed_lies_between_what_must_and_what_may_be():
         assert between(best_first(moves, *ends, "octile").closed, lengths + octile_left(grid, goal), reached)
 
 
-@pytest.mark.parametrize("corner_cutting", [False, True])
+@pytest.mark.parametrize("corner_cutting", [False, True, "one side"])
 def test_jumps_keep_the_neighbours_that_no_path_around_the_cell_reaches(corner_cutting):
     """By the paper's definition, on all surroundings of a cell: a way around that is as long counts after a straight step."""
-    rule = _CUTTING if corner_cutting else _NOT_CUTTING
+    rule = _ROUNDING if corner_cutting else _KEEPING
     for surroundings in itertools.product([0, 1], repeat=8):
         occupied = np.zeros((3, 3), dtype=int)
         for (dx, dy), value in zip(STEPS, surroundings, strict=True):

@@ -19,7 +19,7 @@ from pymoo_gridpath.search.sight import visible
 from pymoo_gridpath.study import AlgorithmSpec, ProblemSpec, Study, run_study
 from pymoo_gridpath.testing import PlannerSuite
 from pymoo_gridpath.testing.branches import enumerate_branches
-from pymoo_gridpath.testing.enumeration import random_query
+from pymoo_gridpath.testing.enumeration import CORNER_RULES, random_query
 from pymoo_gridpath.testing.reference import is_legal, length, turn
 
 
@@ -51,7 +51,7 @@ def cells_of(raw):
 def test_alternatives_are_those_of_a_full_enumeration(strict):
     rng, n_paths, n_none = np.random.default_rng(3), 0, 0
     for _ in range(250):
-        grid, start, goal = random_query(rng, 3, 12)
+        grid, start, goal = random_query(rng, 3, 12, rules=CORNER_RULES)
         paths = enumerate_branches(grid, start, goal, strict)
         _, planned, found = plan(grid, start, goal, max_paths=1000, strict=strict)
         assert found.n_alternatives == len(paths) == len(found.raw)
@@ -66,7 +66,7 @@ def test_alternatives_are_those_of_a_full_enumeration(strict):
 def test_every_query_that_has_a_path_is_solved_legally():
     rng = np.random.default_rng(11)
     for _ in range(300):
-        grid, start, goal = random_query(rng, 3, 40)
+        grid, start, goal = random_query(rng, 3, 40, rules=CORNER_RULES)
         problem, planned, found = plan(grid, start, goal, alternatives=3)
         assert planned.success and found.n_alternatives >= 1
         moves = Moves(grid)
@@ -86,7 +86,7 @@ def test_the_list_is_the_begin_of_the_whole_one_by_the_time_of_the_walk():
     """Where no walk crosses itself; where one does, what is left of a later one may be quicker."""
     rng, compared = np.random.default_rng(7), 0
     while compared < 40:
-        grid, start, goal = random_query(rng, 8, 20)
+        grid, start, goal = random_query(rng, 8, 20, rules=CORNER_RULES)
         whole, part = (plan(grid, start, goal, max_paths=most)[2] for most in (1000, 4))
         if 4 < whole.n_alternatives < 1000:
             assert len(part.raw) == 4 and part.n_alternatives == whole.n_alternatives
@@ -105,7 +105,7 @@ def test_what_is_quicker_depends_on_the_size_of_a_cell():
     """Where cells are small, turns count; where they are large, lengths do."""
     rng, n_other = np.random.default_rng(2), 0
     for _ in range(200):
-        grid, start, goal = random_query(rng, 6, 16)
+        grid, start, goal = random_query(rng, 6, 16, rules=CORNER_RULES)
         paths = {tuple(path) for path in enumerate_branches(grid, start, goal)}
         small, large = (plan(grid.replace(resolution=size), start, goal, max_paths=1000)[2] for size in (1e-6, 1e6))
         small, large = cells_of(small.raw[0]), cells_of(large.raw[0])

@@ -17,6 +17,7 @@ from pymoo_gridpath.operators.duplicates import row_keys
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence, make_representation
 from pymoo_gridpath.testing import reference
+from pymoo_gridpath.testing.enumeration import RULES
 
 
 def joined(paths):
@@ -50,13 +51,13 @@ def test_a_query_without_a_monotone_path_can_be_coded():
 
 
 @settings(max_examples=40)
-@given(st.integers(0, 2**32 - 1), st.booleans(), st.sampled_from([(3, 4), (4, 3), (2, 7), (1, 9)]))
-def test_every_efficient_path_fits_by_default(seed, corner_cutting, shape):
+@given(st.integers(0, 2**32 - 1), st.sampled_from(RULES), st.sampled_from([(3, 4), (4, 3), (2, 7), (1, 9)]))
+def test_every_efficient_path_fits_by_default(seed, steps, shape):
     rng = np.random.default_rng(seed)
     occupied = rng.random(shape) < rng.choice([0.0, 0.2, 0.4])
     start, goal = (0, 0), (shape[1] - 1, shape[0] - 1)
     occupied[0, 0] = occupied[-1, -1] = False
-    grid = OccupancyGrid(occupied, corner_cutting=corner_cutting)
+    grid = OccupancyGrid(occupied, **steps)
     try:
         coding = CellSequence(grid, start, goal)
     except UnreachableError:

@@ -12,6 +12,7 @@ from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.paths.frame import MonotoneFrame
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.testing import reference
+from pymoo_gridpath.testing.enumeration import RULES
 
 NAMES = ["absolute", "binary", "integer", "mixed"]
 
@@ -48,12 +49,12 @@ def test_measures_equal_those_of_the_cells(query, name):
 
 
 @pytest.mark.parametrize("size", [11, 12, 60, 200])
-@pytest.mark.parametrize("corner_cutting", [False, True])
-def test_crossed_cells_are_counted_on_grids_of_any_size(size, corner_cutting):
+@pytest.mark.parametrize("steps", RULES, ids=str)
+def test_crossed_cells_are_counted_on_grids_of_any_size(size, steps):
     rng = np.random.default_rng(size)
     occupied = rng.random((size, size)) < 0.4
     occupied[0] = occupied[:, -1] = False
-    grid = OccupancyGrid(occupied, corner_cutting=corner_cutting)
+    grid = OccupancyGrid(occupied, **steps)
     coding = make_representation("absolute", grid, (0, 0), (size - 1, size - 1), "auto")
     paths = coding.decode(random_genes(coding, rng, 5))
     expected = [reference.interfering_cells(paths.cells(i).tolist(), grid) for i in range(len(paths))]

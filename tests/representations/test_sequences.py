@@ -11,6 +11,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import REPRESENTATIONS, CellSequence, make_representation
+from pymoo_gridpath.testing.enumeration import legal_steps
 
 NAMES = sorted(REPRESENTATIONS)
 
@@ -92,9 +93,7 @@ def test_moves_are_the_legal_steps_that_can_be_coded(query, name):
     for cell in range(coding.moves.n_cells):
         x, y = cell % grid.width, cell // grid.width
         for m, (dx, dy) in enumerate(HEADINGS.tolist()):
-            legal = grid.is_free((x, y)) and grid.is_free((x + dx, y + dy)) and (dx, dy)[along] * forward >= 0
-            if dx and dy and not grid.corner_cutting:
-                legal = legal and grid.is_free((x + dx, y)) and grid.is_free((x, y + dy))
+            legal = grid.is_free((x, y)) and m in dict(legal_steps(grid, (x, y))) and (dx, dy)[along] * forward >= 0
             assert bool(coding.moves.legal[cell] >> m & 1) == legal
 
 

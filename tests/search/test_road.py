@@ -9,6 +9,7 @@ from scipy.sparse import csgraph
 from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.road import way_to, with_legal_steps
+from pymoo_gridpath.testing.enumeration import RULES
 from pymoo_gridpath.testing.reference import broken_cells, length
 
 
@@ -16,11 +17,11 @@ def tuples(moves, index):
     return [tuple(cell) for cell in moves.cells(index).tolist()]
 
 
-@pytest.mark.parametrize("corner_cutting", [False, True])
-def test_ways_are_shortest_to_the_nearest_wanted_cell(corner_cutting):
+@pytest.mark.parametrize("steps", RULES, ids=str)
+def test_ways_are_shortest_to_the_nearest_wanted_cell(steps):
     rng, none = np.random.default_rng(8), 0
     for _ in range(80):
-        grid = OccupancyGrid(rng.random((12, 15)) < 0.4, corner_cutting=corner_cutting)
+        grid = OccupancyGrid(rng.random((12, 15)) < 0.4, **steps)
         wanted = (rng.random(180) < 0.02) & ~grid.occupied.ravel()
         start = int(rng.choice(np.flatnonzero(~grid.occupied.ravel())))
         far = csgraph.dijkstra(grid.move_graph(), indices=start)

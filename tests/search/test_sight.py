@@ -25,6 +25,7 @@ from pymoo_gridpath.search.sight import (
     smoothed,
     visible,
 )
+from pymoo_gridpath.testing.enumeration import RULES
 from pymoo_gridpath.testing.reference import broken_cells, is_legal, walk
 
 
@@ -32,7 +33,7 @@ from pymoo_gridpath.testing.reference import broken_cells, is_legal, walk
 def grids(draw):
     shape = draw(st.integers(1, 9)), draw(st.integers(1, 9))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    return OccupancyGrid(rng.random(shape) < draw(st.sampled_from([0.1, 0.3])), corner_cutting=draw(st.booleans())), rng
+    return OccupancyGrid(rng.random(shape) < draw(st.sampled_from([0.1, 0.3])), **draw(st.sampled_from(RULES))), rng
 
 
 def crosses(a, b, cell):
@@ -65,7 +66,11 @@ def is_free(grid, a, b):
     xs, ys = (range(min(u, v), max(u, v) + 1) for u, v in zip(a, b, strict=True))
     if any(grid.occupied[y, x] and crosses(a, b, (x, y)) for x in xs for y in ys):
         return False
-    return grid.corner_cutting or not any(grid.occupied[y, x] for corner in corners_on(a, b) for x, y in corner)
+    if grid.moves == 4:
+        return not list(corners_on(a, b))
+    # Of the four cells around a corner the line touches two, and enters the others.
+    most = {False: 0, "one side": 1, True: 2}[grid.corner_cutting]
+    return all(sum(grid.occupied[y, x] for x, y in corner) <= most for corner in corners_on(a, b))
 
 
 def nearest_cells(a, b):

@@ -13,6 +13,7 @@ from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.maps import Query, load_map, query_of, read_scen
 from pymoo_gridpath.maps.queries import check_grown, ends_of
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
+from pymoo_gridpath.neighbourhood import neighbourhood_of
 from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_grid, pack_grid
@@ -72,8 +73,8 @@ def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyG
         for seed in family.seeds:
             content = {"size": family.size, "p0": family.p0, "seed": seed, "corner_cutting": family.corner_cutting}
             grid = {"random": content}
-            if not family.corner_cutting:
-                # With corner cutting there is always a path.
+            if neighbourhood_of(8, family.corner_cutting).restricts:
+                # Elsewhere there is always a path.
                 refuse(study, (*place_of(k), "random"), f"seed {seed}: ", build_grid(grid).check_query, (0, 0), goal)
             yield _Item(str(seed), grid, None, (0, 0), goal)
         return

@@ -8,6 +8,7 @@ import os
 import platform
 import time
 import traceback
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any
@@ -17,7 +18,7 @@ from pymoo.core.callback import Callback
 
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
-from pymoo_gridpath.problems.members import Members
+from pymoo_gridpath.problems.members import Members, Snapshot, snapshot
 from pymoo_gridpath.study.planning.build import build_algorithm, build_planner, build_problem, build_termination
 from pymoo_gridpath.study.planning.plan import Task, needed_for
 from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
@@ -179,8 +180,7 @@ class Recorder(Callback):
     def __init__(self, objectives):
         super().__init__()
         self.seconds: list[float] = []
-        self._counts: list[tuple[int, int, int, float]] = []
-        self._fronts: list[np.ndarray] = []
+        self._snapshots: list[Snapshot] = []
         self._n_obj = len(objectives)
         self.generation = 0
         self._recorded = 0
@@ -193,7 +193,7 @@ class Recorder(Callback):
         if (self.generation - 1) % self._step:
             return
         if len(self.seconds) == MAX_RECORDS:
-            for records in (self.seconds, self._counts, self._fronts):
+            for records in (self.seconds, self._snapshots):
                 del records[1::2]
             self._step *= 2
             if (self.generation - 1) % self._step:
@@ -205,22 +205,19 @@ class Recorder(Callback):
         if self._recorded == self.generation:
             return
         if len(self.seconds) == MAX_RECORDS:
-            for records in (self.seconds, self._counts, self._fronts):
+            for records in (self.seconds, self._snapshots):
                 records.pop()
         self._record(algorithm)
 
     def _record(self, algorithm: Any) -> None:
-        seconds = time.perf_counter() - self._begin
-        members = Members(algorithm)
-        self.seconds.append(seconds)
-        self._counts.append((int(algorithm.evaluator.n_eval), members.n_legal, members.n_members, members.least("length")))
-        self._fronts.append(members.F[members.front()])
+        self.seconds.append(time.perf_counter() - self._begin)
+        self._snapshots.append(snapshot(algorithm, Members(algorithm)))
         self._recorded = self.generation
 
     def history(self) -> History:
         """Return the records."""
-        evaluations, n_legal, n_members, best = zip(*self._counts, strict=True)
-        points, first, last = _spans(self._fronts)
+        evaluations, n_legal, n_members, best, fronts = zip(*self._snapshots, strict=True)
+        points, first, last = _spans(fronts)
         return History(
             evaluations=np.array(evaluations, dtype=np.int64),
             seconds=np.array(self.seconds),
@@ -233,7 +230,7 @@ class Recorder(Callback):
         )
 
 
-def _spans(fronts: list[np.ndarray]) -> tuple[list[np.ndarray], list[int], list[int]]:
+def _spans(fronts: Sequence[np.ndarray]) -> tuple[list[np.ndarray], list[int], list[int]]:
     """Return each point that is in successive fronts once, with the first and the last of these."""
     points: list[np.ndarray] = []
     first: list[int] = []
