@@ -28,7 +28,7 @@ from pymoo_gridpath.algorithms.known import class_of, find_algorithm, refuse_pro
 from pymoo_gridpath.algorithms.rvea import FiniteAPDSurvival
 from pymoo_gridpath.algorithms.spea2 import ArraySPEA2Survival, FitnessTournament, StrengthAndSmoothness, StrengthTournament
 from pymoo_gridpath.errors import CapabilityError
-from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, SpliceCrossover, default_operators
+from pymoo_gridpath.operators import ArrayMating, RankAndSmoothness, SmoothnessTournament, default_operators
 from pymoo_gridpath.operators.known import operator_of
 from pymoo_gridpath.operators.mating import mates_on_arrays
 from pymoo_gridpath.operators.selection import CrowdingTournament, NeighborTournament
@@ -175,8 +175,7 @@ def build(
     _arguments.check_together(row.name, given, problem.n_obj, settings.get("ref_dirs"))
     if "pop_size" in accepted:
         settings["pop_size"] = pop_size
-    if "survival" not in given and isinstance(settings.get("crossover"), SpliceCrossover):
-        # Its children are legal, so that many soon have equal objectives.
+    if "survival" not in given and getattr(settings.get("crossover"), "makes_legal", False):
         survival = settings.get("survival")
         if isinstance(survival, RankAndSmoothness):
             survival.distinct = True

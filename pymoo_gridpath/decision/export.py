@@ -118,7 +118,8 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     if trade_off.least_length is not None:
         metres = trade_off.least_length * trade_off.problem.grid.resolution
         shortest = f"{trade_off.least_length:.3f} ({metres:.3f} m)"
-        lines.append(f"for comparison, the shortest of all paths on this grid has length {shortest}")
+        still = " where nothing moves" if trade_off.problem.representation.timed else ""
+        lines.append(f"for comparison, the shortest of all paths on this grid{still} has length {shortest}")
     if trade_off.advice:
         lines.append(f"NOTE: {trade_off.advice}")
     return "\n".join(lines)

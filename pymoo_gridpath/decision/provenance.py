@@ -47,6 +47,8 @@ def describe_problem(problem) -> dict:
             "obstacles": getattr(problem, "obstacles", None),
             "penalty": getattr(problem, "penalty", None),
             "potential_limit": getattr(problem, "potential_limit", None),
+            # For each obstacle that moves its cell at each tick, (-9, -9) where it is nowhere.
+            **({"movers": representation.timetable.at.swapaxes(0, 1).tolist()} if representation.timed else {}),
         },
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,13 +24,14 @@ from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.versions import versions
 
-#: What members of a trade-off set go by, in the order in which tables and figures show them.
+#: What members of a trade-off set go by, in the order in which tables and figures show them; of paths in time, one is the
+#: "earliest", too.
 NAMES = ("shortest", "safest", "smoothest", "knee")
 
 # By which share the shortest path found may be longer than the shortest of all before that is remarked on.
 _MUCH_LONGER = 0.05
 
-_LEAST = {"shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
+_LEAST = {"earliest": "arrival", "shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +43,9 @@ class PathRecord:
     index : int
         Its place in the set.
     names : tuple of str
-        Which of `NAMES` it goes by.
+        Which of `NAMES` it goes by, or "earliest".
     cells : numpy.ndarray of int, shape (n_cells, 2)
-        Visited cells (x, y), start and goal included.
+        Visited cells (x, y), start and goal included; of a path in time its cell at each tick.
     points : numpy.ndarray of float, shape (n_cells, 2)
         Their centres in metres in the map's frame.
     length, length_m : float
@@ -56,7 +57,8 @@ class PathRecord:
     interfering_cells : int
         Number of occupied cells that it crosses; 0 for a legal path.
     clearance : float
-        Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid.
+        Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid. Of a path in time
+        also from those of obstacles that move, at the same tick.
     objectives : dict of str to float
         The plain objectives of the problem.
     genes : numpy.ndarray, shape (n_var,)
@@ -109,7 +111,8 @@ class TradeOffSet:
     -----
     ``trade_off["knee"]`` or ``trade_off.knee`` is a `PathRecord`; so is ``trade_off[0]``. `shortest`, `safest` and `smoothest`
     have the least length, vulnerability and turn *of the set*, whatever its objectives; ties go to the path that is better
-    in the first objective that differs. `knee` is defined in `knee_point`, on the objectives of the problem.
+    in the first objective that differs. `knee` is defined in `knee_point`, on the objectives of the problem. Of paths in time,
+    those of a `TimedPathProblem`, `earliest` is the one that arrives first.
 
     References
     ----------
@@ -209,6 +212,7 @@ class TradeOffSet:
             "interfering_cells": np.asarray(self.paths.interfering_cells),
             "clearance": np.array([field.take(cells @ (1, grid.width)).min() for cells in self._cells]),
         }
+        found["clearance"] = np.minimum(found["clearance"], self.paths.mover_distance)
         for name, values in zip(self.objective_names, self.F.T, strict=True):
             found.setdefault(name, values)
         return found
@@ -222,10 +226,11 @@ class TradeOffSet:
 
     @functools.cached_property
     def named(self) -> dict[str, int]:
-        """Index of the path that goes by each of `NAMES`."""
+        """Index of the path that goes by each of `NAMES`, and of paths in time that of the "earliest"."""
         # Paths stand in the order of their objectives, so the first of equal ones is the better.
-        least = {name: int(np.argmin(self.measures[measure])) for name, measure in _LEAST.items()}
-        return {**least, "knee": knee_point(self.F)}
+        least = {name: int(np.argmin(self.measures[of])) for name, of in _LEAST.items() if of in self.measures}
+        found = {**least, "knee": knee_point(self.F)}
+        return {name: found[name] for name in names_for(self.objective_names)}
 
     def index(self, name: str) -> int:
         """Return the index of the path that goes by a name.
@@ -243,6 +248,11 @@ class TradeOffSet:
         """Return the names that the path at an index goes by, none for most, and none if the paths are not legal."""
         index = checks.whole("index", index, 0, len(self) - 1)
         return tuple(name for name, k in self.named.items() if k == index and self.feasible)
+
+    @property
+    def earliest(self) -> PathRecord:
+        """The path in time that arrives first; there is none of paths on a map that stands still."""
+        return self["earliest"]
 
     @property
     def shortest(self) -> PathRecord:
@@ -304,7 +314,10 @@ class TradeOffSet:
 
     @functools.cached_property
     def least_length(self) -> float | None:
-        """Length in cells of the shortest of all legal paths on the grid in any coding; None if length is no objective."""
+        """Length in cells of the shortest of all legal paths on the grid, in any coding and where nothing moves.
+
+        None if length is no objective.
+        """
         if "length" not in self.objective_names:
             return None
         return self.problem.grid.shortest_length(self.problem.start, self.problem.goal)
@@ -313,10 +326,11 @@ class TradeOffSet:
     def advice(self) -> str:
         """What to try where the shortest path found is over 5 % longer than the shortest of all; empty where it is not.
 
-        It is empty, too, if length is no objective, if the paths are not legal, and under a potential limit, which the shortest
-        of all may not keep.
+        It is empty, too, if length is no objective, if the paths are not legal, and where the shortest of all may not be one of
+        them: under a potential limit, and among obstacles that move.
         """
-        if self.least_length is None or not self.feasible or self.problem.potential_limit is not None:
+        others = self.problem.potential_limit is not None or self.problem.representation.timed
+        if self.least_length is None or not self.feasible or others:
             return ""
         excess = float(self.measures["length"].min()) / self.least_length - 1.0
         if excess <= _MUCH_LONGER:
@@ -374,6 +388,11 @@ class TradeOffSet:
         return write_whole(path, export.json_text(self).encode())
 
 
+def names_for(objectives: Collection[str]) -> tuple[str, ...]:
+    """Return the names that paths go by which are scored by these objectives, in the order in which they are shown."""
+    return tuple(name for name in ("earliest", *NAMES) if name in NAMES or _LEAST[name] in objectives)
+
+
 def check_set(trade_off: TradeOffSet) -> TradeOffSet:
     """Return a trade-off set if it is one, or has what figures ask of one."""
     if all(hasattr(trade_off, name) for name in ("problem", "F", "objective_names", "feasible", "index")):
@@ -419,13 +438,13 @@ def _common_problem(runs: Sequence) -> Any:
             continue
         mine, other = provenance.describe_problem(first), provenance.describe_problem(problem)
         for part, keys in (("map", mine["map"]), ("query", mine["query"]), ("settings", _MUST_AGREE)):
-            differ = [key for key in keys if mine[part][key] != other[part][key]]
+            differ = [key for key in keys if mine[part].get(key) != other[part].get(key)]
             if differ:
                 raise GridPathError(f"Results 0 and {k} differ in the {part} ({differ[0]}), expected runs of one problem")
     return first
 
 
-_MUST_AGREE = ("representation", "axis", "max_cells", "objectives", "potential_limit")
+_MUST_AGREE = ("representation", "axis", "max_cells", "objectives", "potential_limit", "movers")
 
 
 def _check_settings(settings: Mapping | None) -> None:

@@ -15,6 +15,7 @@ from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
 from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.three import front_of_three
+from pymoo_gridpath.exact.timed import exact_timed_front
 from pymoo_gridpath.exact.two import front_of_two
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.paths.sequences import Sequences
@@ -74,7 +75,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     """Return the Pareto front of the legal paths of a problem.
 
     Legal paths cross no occupied cell and, with ``obstacles="limit"``, keep the potential limit. Those of a monotone
-    representation never turn back along its axis. Those of `CellSequence` visit no more than its ``max_cells`` cells.
+    representation never turn back along its axis. Those of `CellSequence` visit no more than its ``max_cells`` cells. Of a
+    `TimedPathProblem` it is the front that `exact_timed_front` finds.
 
     Parameters
     ----------
@@ -105,6 +107,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     """
     moves = representation_of(problem).moves
     checks.instance("budget", budget, Budget, optional=True)
+    if problem.representation.timed:
+        return _front_in_time(problem, budget)
     if problem.n_obj > 3:
         raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
     if moves.n_cells >= _MOST_CELLS:
@@ -145,6 +149,16 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     if X is None:
         X = problem.representation.from_sequences(_sequences(paths))
     return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
+
+
+def _front_in_time(problem, budget: Budget | None) -> ExactResult:
+    """Return the front of a problem of paths in time."""
+    coding = problem.representation
+    found = exact_timed_front(
+        problem.grid, problem.start, problem.goal, coding.movers, coding.horizon, problem.variance, budget
+    )
+    X = coding.from_sequences(_sequences([path @ (1, problem.grid.width) for path in found.paths]))
+    return ExactResult(X, found.F, found.complete, found.message, found.n_labels, found.n_bytes, found.seconds)
 
 
 class _Part(NamedTuple):

@@ -7,18 +7,24 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.errors import counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import OCTILE
-from pymoo_gridpath.fields import QUANTUM, obstacle_potential
+from pymoo_gridpath.fields import QUANTUM, check_variance
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid, check_grid
-from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths.trajectories import Trajectories
-from pymoo_gridpath.search.moves import Moves, uncut
+from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.timetable import occupied_at, potential_at, steps_between
 
 #: The length of a step along each heading, and of a wait.
 _LENGTHS = np.append(OCTILE, 0)
+
+# To eight neighbours, and a wait.
+_STEPS = 9
+
+# Labels that are gone on from before the budget is asked again.
+_PART = 2**15 if COMPILED else 2**11
 
 
 class TimedFront(NamedTuple):
@@ -34,7 +40,10 @@ class TimedFront(NamedTuple):
         Whether this is the whole front of the paths that arrive within the horizon.
     message : str
         How the search ended. Without a path within the horizon it gave up, which is not to say that there is none.
-    n_labels : int
+    n_labels, n_bytes : int
+        The labels that were made, and the most bytes that they took at a time.
+    seconds : float
+        Time that the search took.
     """
 
     paths: list[np.ndarray]
@@ -42,6 +51,8 @@ class TimedFront(NamedTuple):
     complete: bool
     message: str
     n_labels: int
+    n_bytes: int
+    seconds: float
 
 
 def exact_timed_front(
@@ -83,25 +94,25 @@ def exact_timed_front(
     start, goal = check_grid(grid).check_query(start, goal)
     checks.instance("movers", movers, Trajectories)
     horizon = checks.whole("horizon", horizon, 1, 100_000)
+    variance = check_variance(variance)
     checks.instance("budget", budget, Budget, optional=True)
     meter = Meter(budget or Budget())
     moves = Moves(grid)
     first, last = moves.index(start), moves.index(goal)
+    offsets = np.append(moves.offsets, 0)
     at = movers.cells(horizon)
     # Of the labels of all ticks: cell, parent, length, vulnerability.
-    labels = [np.array([[first, -1, 0, 0]], dtype=np.int64)]
-    occupied, potential = _tick(grid, at[0], variance)
-    labels[0][0, 3] = potential[first]
+    labels = [np.array([[first, -1, 0, potential_at(grid, at[0], variance)[first]]], dtype=np.int64)]
     n_before, ends = 0, np.empty((0, 4), dtype=np.int64)
-    if occupied[first]:
+    if occupied_at(grid, at[0]).flat[first]:
         labels[0] = labels[0][:0]
     for tick in range(1, horizon + 1):
-        meter.check(n_before + len(labels[-1]), 32 * (n_before + len(labels[-1])))
-        if meter.message or not len(labels[-1]):
+        if not len(labels[-1]):
             break
-        after, potential = _tick(grid, at[tick], variance)
-        barred = _barred(grid, at[tick - 1], at[tick], occupied, after)
-        made = _layer(moves.legal & ~barred, moves.offsets, _LENGTHS, after, potential, labels[-1], n_before, ends[:, 2:], last)
+        legal, potential = steps_between(grid, moves, at[tick - 1], at[tick]), potential_at(grid, at[tick], variance)
+        made = _layer(meter, legal, offsets, potential, labels[-1], n_before, ends[:, 2:], last)
+        if meter.message:
+            break
         n_before += len(labels[-1])
         home = made[:, 0] == last
         if home.any():
@@ -109,7 +120,6 @@ def exact_timed_front(
             more = np.column_stack([numbers, np.full(len(numbers), tick), made[home, 2:]])
             ends = np.concatenate([ends, more])
         labels.append(made)
-        occupied = after
     whole = np.concatenate(labels)
     paths = [_traced(moves, whole, int(number)) for number in ends[:, 0]]
     F = np.array(
@@ -126,7 +136,7 @@ def exact_timed_front(
     else:
         message = f"gave up at the horizon, tick {horizon}: no path arrives by then"
     complete = not meter.message and (len(F) > 0 or not len(labels[-1]))
-    return TimedFront([paths[k] for k in order], F[order], complete, message, len(whole))
+    return TimedFront([paths[k] for k in order], F[order], complete, message, len(whole), meter.n_bytes, meter.elapsed)
 
 
 def _scored(path: np.ndarray, arrival: int, vulnerability: int) -> tuple[float, float, float]:
@@ -136,51 +146,38 @@ def _scored(path: np.ndarray, arrival: int, vulnerability: int) -> tuple[float, 
     return float(arrival), straight + SQRT2 * diagonal, vulnerability * QUANTUM
 
 
-def _tick(grid: OccupancyGrid, cells: np.ndarray, variance: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return whether each cell is occupied, and the potential in units of `QUANTUM`, each of shape (n_cells,)."""
-    x, y = cells.T
-    inside = (x >= 0) & (x < grid.width) & (y >= 0) & (y < grid.height)
-    occupied = grid.occupied.copy()
-    occupied[y[inside], x[inside]] = True
-    potential = obstacle_potential(grid.replace(occupied=occupied), variance)
-    return occupied.ravel(), np.rint(potential.ravel() / QUANTUM).astype(np.int64)
+def _layer(meter: Meter, legal, offsets, potential, labels: np.ndarray, n_before: int, ends: np.ndarray, goal: int):
+    """Return the non-dominated labels of the next tick, int64, shape (n, 4); those at the goal lead no further.
 
-
-def _barred(grid: OccupancyGrid, before, after, occupied, occupied_after) -> np.ndarray:
-    """Return the steps that moving obstacles bar besides those into their cells, as bits, uint8, shape (n_cells,)."""
-    barred = ~uncut(grid, np.pad(~(occupied | occupied_after).reshape(grid.shape), 1))
-    # Who meets an obstacle halfway has the middle of the step in common with it.
-    for (x0, y0), (x1, y1) in zip(before.tolist(), after.tolist(), strict=True):
-        if max(abs(x1 - x0), abs(y1 - y0)) != 1:
-            continue
-        for m, (dx, dy) in enumerate(HEADINGS.tolist()):
-            twice = x0 + x1 - dx, y0 + y1 - dy
-            x, y = twice[0] // 2, twice[1] // 2
-            if twice[0] % 2 == twice[1] % 2 == 0 and 0 <= x < grid.width and 0 <= y < grid.height:
-                barred[y, x] |= np.uint8(1 << m)
-    return barred.ravel()
+    The meter, asked now and then, may end it early.
+    """
+    heads = np.full(len(legal), -1)
+    made = np.empty((_STEPS * len(labels), 4), dtype=np.int64)
+    following = np.full(len(made), -1)
+    n = 0
+    for begin in range(0, len(labels), _PART):
+        n_labels = n_before + len(labels) + n
+        meter.check(n_labels, labels.itemsize * (4 * n_labels + 5 * len(made)))
+        if meter.message:
+            break
+        part = labels[begin : begin + _PART]
+        n = _grow(legal, offsets, _LENGTHS, potential, part, n_before + begin, ends, goal, heads, made, following, n)
+    made = made[:n]
+    return made[made[:, 0] >= 0]
 
 
 @kernel
-def _layer(legal, offsets, lengths, occupied, potential, labels, n_before, ends, goal):
-    """Return the non-dominated labels of the next tick, int64, shape (n, 4); those at the goal lead no further."""
-    heads = np.full(len(legal), -1)
-    out = np.empty((9 * len(labels), 4), dtype=np.int64)
-    following = np.full(9 * len(labels), -1)
-    n = 0
+def _grow(legal, offsets, lengths, potential, labels, n_before, ends, goal, heads, made, following, n):
+    """Add the labels that follow from some to the ``n`` made already; return how many these are then, with dominated ones."""
     for i in range(len(labels)):
         cell = labels[i, 0]
         if cell == goal:
             continue
         for m in range(9):
-            other = cell
-            length = labels[i, 2] + lengths[m]
-            if m < 8:
-                if not (legal[cell] >> m) & 1:
-                    continue
-                other = cell + offsets[m]
-            if occupied[other]:
+            if not (legal[cell] >> m) & 1:
                 continue
+            other = cell + offsets[m]
+            length = labels[i, 2] + lengths[m]
             vulnerability = labels[i, 3] + potential[other]
             dominated = False
             # A path that has arrived is earlier, so that it dominates what is no better in the other two.
@@ -193,12 +190,12 @@ def _layer(legal, offsets, lengths, occupied, potential, labels, n_before, ends,
             last = -1
             k = heads[other]
             while k >= 0:
-                if out[k, 2] <= length and out[k, 3] <= vulnerability:
+                if made[k, 2] <= length and made[k, 3] <= vulnerability:
                     dominated = True
                     break
-                if out[k, 2] >= length and out[k, 3] >= vulnerability:
+                if made[k, 2] >= length and made[k, 3] >= vulnerability:
                     # Out of the list, and marked as no label.
-                    out[k, 0] = -1
+                    made[k, 0] = -1
                     if last < 0:
                         heads[other] = following[k]
                     else:
@@ -208,20 +205,14 @@ def _layer(legal, offsets, lengths, occupied, potential, labels, n_before, ends,
                 k = following[k]
             if dominated:
                 continue
-            out[n, 0] = other
-            out[n, 1] = n_before + i
-            out[n, 2] = length
-            out[n, 3] = vulnerability
+            made[n, 0] = other
+            made[n, 1] = n_before + i
+            made[n, 2] = length
+            made[n, 3] = vulnerability
             following[n] = heads[other]
             heads[other] = n
             n += 1
-    kept = 0
-    for k in range(n):
-        if out[k, 0] >= 0:
-            for j in range(4):
-                out[kept, j] = out[k, j]
-            kept += 1
-    return out[:kept].copy()
+    return n
 
 
 def _traced(moves: Moves, labels: np.ndarray, number: int) -> np.ndarray:

@@ -17,6 +17,13 @@ from pymoo_gridpath.operators.path_crossover import SpliceCrossover
 from pymoo_gridpath.operators.path_mutation import PathMutation
 from pymoo_gridpath.operators.path_repair import PathRepair
 from pymoo_gridpath.operators.path_sampling import ReachableSampling, ScalarizedSampling
+from pymoo_gridpath.operators.path_timed import (
+    RandomTimedSampling,
+    TimedCrossover,
+    TimedMutation,
+    TimedRepair,
+    TimedSampling,
+)
 from pymoo_gridpath.operators.repair import EdgeFixing
 from pymoo_gridpath.operators.roulette import ElitistSurvival, RouletteSelection
 from pymoo_gridpath.operators.sampling import RandomSampling
@@ -41,6 +48,7 @@ __all__ = [
     "PathRepair",
     "PointCrossover",
     "RandomSampling",
+    "RandomTimedSampling",
     "RankAndSmoothness",
     "ReachableSampling",
     "RouletteSelection",
@@ -50,6 +58,10 @@ __all__ = [
     "SinglePointCrossover",
     "SmoothnessTournament",
     "SpliceCrossover",
+    "TimedCrossover",
+    "TimedMutation",
+    "TimedRepair",
+    "TimedSampling",
     "TwoPointCrossover",
     "cell_operators",
     "default_operators",

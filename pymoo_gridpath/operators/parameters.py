@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,28 @@ def whole(name: str, value: Any, low: int, high: int) -> int:
     if checks.number(name, given, low, high, expected=expected) % 1:
         raise GridPathError(f"{name} is {checks.shown(given)}, expected {expected}")
     return int(given)
+
+
+def shares_of(ways: Any, known: Mapping[str, float]) -> np.ndarray:
+    """Return the shares of the known ways of a mutation, which add up to 1; by default those that are known.
+
+    Raises
+    ------
+    GridPathError
+        If they are no mapping, a way is unknown, or no share is positive.
+    """
+    if not (ways is None or isinstance(ways, Mapping)):
+        raise GridPathError(f"ways is {checks.shown(ways)}, expected a mapping from ways to shares, such as {{'random': 1}}")
+    ways = dict(known if ways is None else ways)
+    unknown = set(ways) - set(known)
+    if unknown:
+        raise GridPathError(
+            f"there is no way {sorted(map(checks.shown, unknown))[0]} to mutate a path, expected {', '.join(known)}"
+        )
+    shares = np.array([float(in_range(way, ways.get(way, 0.0), 0, np.inf)) for way in known])
+    if not np.isfinite(shares).all() or shares.sum() <= 0:
+        raise GridPathError(f"ways is {checks.shown(ways)}, expected shares of which one or more are positive")
+    return shares / shares.sum()
 
 
 def one_or_two(n_offsprings: int) -> int:

@@ -32,6 +32,9 @@ class SpliceCrossover(Crossover):
         Children of each mating; algorithms that use one, such as C-TAEA, need 1.
     """
 
+    # So that many soon have equal objectives.
+    makes_legal = True
+
     def __init__(self, reach: int = 4, prob: float = CROSSOVER_RATE, n_offsprings: int = 2, **kwargs):
         super().__init__(2, one_or_two(n_offsprings), prob=in_range("prob", prob, 0, 1), **kwargs)
         self.reach = whole("reach", reach, 0, 64)

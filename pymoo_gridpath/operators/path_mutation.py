@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from pymoo.core.mutation import Mutation
 
-from pymoo_gridpath import checks
-from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.operators.parameters import in_range, whole
+from pymoo_gridpath.operators.parameters import in_range, shares_of, whole
 from pymoo_gridpath.operators.path_sampling import noise_of, random_stretches
 from pymoo_gridpath.operators.path_terrain import paths_of, random_weights, terrain_of
 from pymoo_gridpath.registry import OPERATORS
@@ -51,20 +47,7 @@ class PathMutation(Mutation):
 
     def __init__(self, ways=None, margin: int = 16, max_expansions: int = 5000, prob: float = 1.0, **kwargs):
         super().__init__(prob=in_range("prob", prob, 0, 1), **kwargs)
-        if not (ways is None or isinstance(ways, Mapping)):
-            raise GridPathError(
-                f"ways is {checks.shown(ways)}, expected a mapping from ways to shares, such as {{'random': 1}}"
-            )
-        ways = dict(WAYS if ways is None else ways)
-        unknown = set(ways) - set(WAYS)
-        if unknown:
-            raise GridPathError(
-                f"there is no way {sorted(map(checks.shown, unknown))[0]} to mutate a path, expected {', '.join(WAYS)}"
-            )
-        shares = np.array([float(in_range(way, ways.get(way, 0.0), 0, np.inf)) for way in WAYS])
-        if not np.isfinite(shares).all() or shares.sum() <= 0:
-            raise GridPathError(f"ways is {checks.shown(ways)}, expected shares of which one or more are positive")
-        self.shares = shares / shares.sum()
+        self.shares = shares_of(ways, WAYS)
         self.margin = whole("margin", margin, 0, 10**6)
         self.max_expansions = whole("max_expansions", max_expansions, 1, 10**9)
 

@@ -59,11 +59,11 @@ class ReachableSampling(Sampling):
         X = self._draw(problem, points, n_samples, 0, random_state)
         for k in range(1, ROUNDS + 1):
             # Those that were too long have all become the shortest path.
-            again = _repeated(X)
+            again = repeated_rows(X)
             if len(again) == 0:
                 break
             X[again] = self._draw(problem, points, len(again), k, random_state)
-            if k > 1 and len(_repeated(X)) == len(again):
+            if k > 1 and len(repeated_rows(X)) == len(again):
                 break
         return X
 
@@ -127,7 +127,7 @@ class ScalarizedSampling(Sampling):
         rows = np.arange(n_samples) % len(spread)
         weights, X = spread[rows], problem.representation.from_sequences(cheapest)[which.ravel()[rows]]
         for k in range(ROUNDS):
-            again = _repeated(X)
+            again = repeated_rows(X)
             if self.noise == 0 or len(again) == 0:
                 break
             noise = noise_of(self.noise * (1 + k / 2), len(again), random_state)
@@ -168,11 +168,16 @@ def spread_weights(problem, n: int, random_state) -> np.ndarray:
     n_terms = len(objective_terms(problem))
     if n_terms == 1:
         return whole_weights(problem, np.ones((n, 1)))
+    lattice = spread_shares(n_terms, n)
+    return np.concatenate([whole_weights(problem, lattice), random_weights(problem, n - len(lattice), random_state)])
+
+
+def spread_shares(n_terms: int, n: int) -> np.ndarray:
+    """Return shares of two terms or more that are spread evenly over the simplex, the largest lattice of at most n points."""
     n_partitions = 1
     while _lattice_size(n_terms, n_partitions + 1) <= n:
         n_partitions += 1
-    lattice = UniformReferenceDirectionFactory(n_terms, n_partitions=n_partitions).do()[:n]
-    return np.concatenate([whole_weights(problem, lattice), random_weights(problem, n - len(lattice), random_state)])
+    return UniformReferenceDirectionFactory(n_terms, n_partitions=n_partitions).do()[:n]
 
 
 def _lattice_size(n_dim: int, n_partitions: int) -> int:
@@ -188,7 +193,7 @@ def noise_of(roughness: float, n: int, random_state) -> np.ndarray:
     return np.stack([np.full(n, round(1024 * roughness)), blocks, seeds], axis=1)
 
 
-def _repeated(X: np.ndarray) -> np.ndarray:
+def repeated_rows(X: np.ndarray) -> np.ndarray:
     """Return the numbers of the rows that equal an earlier one."""
     seen: set[bytes] = set()
     repeated = []

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import moves_of, visiting_costs
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import Representation, max_cells, representation_of
@@ -34,6 +35,11 @@ def terrain_of(problem) -> Terrain:
 def _known_of(problem) -> tuple[Representation, Terrain, list[int]]:
     """Return the representation and terrain of a problem, and the numbers of the terms that are objectives, at least one."""
     representation = representation_of(problem)
+    if representation.timed:
+        raise GridPathError(
+            f"these operators know nothing of time, and the problem is of the class {type(problem).__name__}, expected those "
+            f"of path_operators(problem)"
+        )
     known = _TERRAINS.get(problem)
     if known is None or known[0] is not representation:
         fields = [visiting_costs(objective, problem.grid, representation.box) for objective in problem.objectives]

@@ -20,6 +20,14 @@ from pymoo_gridpath.operators.path_mutation import PathMutation
 from pymoo_gridpath.operators.path_repair import PathRepair
 from pymoo_gridpath.operators.path_sampling import ReachableSampling, ScalarizedSampling
 from pymoo_gridpath.operators.path_terrain import terrain_of
+from pymoo_gridpath.operators.path_timed import (
+    RandomTimedSampling,
+    TimedCrossover,
+    TimedMutation,
+    TimedRepair,
+    TimedSampling,
+    timed_terrain_of,
+)
 from pymoo_gridpath.operators.repair import EdgeFixing
 from pymoo_gridpath.operators.roulette import ElitistSurvival, RouletteSelection
 from pymoo_gridpath.operators.sampling import RandomSampling
@@ -31,9 +39,19 @@ _VARIATION = ("crossover", "mutation")
 #: The samplings that know paths, by the name of the set that they make.
 PATH_SAMPLINGS: dict[str, type] = {"scalarized": ScalarizedSampling, "random": ReachableSampling}
 
+_TIMED_SAMPLINGS: dict[str, type] = {"scalarized": TimedSampling, "random": RandomTimedSampling}
 
-def path_classes(sampling: str = "scalarized") -> dict[str, type]:
-    """Return the classes of `path_operators`, by slot."""
+
+def path_classes(sampling: str = "scalarized", timed: bool = False) -> dict[str, type]:
+    """Return the classes of `path_operators`, by slot, for paths on a map that stands still or for paths in time."""
+    if timed:
+        return {
+            "sampling": _TIMED_SAMPLINGS[sampling],
+            "crossover": TimedCrossover,
+            "mutation": TimedMutation,
+            "repair": TimedRepair,
+            "eliminate_duplicates": RowDuplicates,
+        }
     return {
         "sampling": PATH_SAMPLINGS[sampling],
         "crossover": SpliceCrossover,
@@ -123,6 +141,8 @@ def paper_operators(problem, eta_crossover: float = ETA_CROSSOVER, eta_mutation:
 def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalarized") -> dict:
     """Return operators that know paths: whatever they make is a legal path, in any representation.
 
+    Those for a `TimedPathProblem` know of time, too.
+
     pymoo's own constructors take them as they are where the capability table says "Unpacks":
     ``NSGA2(pop_size=100, **path_operators(problem))``. Others, such as MOEA/D, refuse one of them or heed it not;
     ``make_algorithm("MOEA/D", problem, operators=path_operators(problem))`` fits them to every algorithm that takes a
@@ -133,7 +153,7 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
     problem : GridPathProblem
     sampling : {"scalarized", "random"}, default "scalarized"
         Whether the first population has the cheapest paths for weights of the objectives, `ScalarizedSampling`, or random
-        paths, `ReachableSampling`.
+        paths, `ReachableSampling`; in time, `TimedSampling` or `RandomTimedSampling`.
 
     Returns
     -------
@@ -146,8 +166,10 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
         If the sampling is unknown, or the problem has no path representation.
     """
     checks.one_of("sampling", sampling, PATH_SAMPLINGS)
-    terrain_of(problem)
-    return {slot: cls() for slot, cls in path_classes(sampling).items()}
+    timed = representation_of(problem).timed
+    # So that a problem that has none is refused here.
+    (timed_terrain_of if timed else terrain_of)(problem)
+    return {slot: cls() for slot, cls in path_classes(sampling, timed).items()}
 
 
 def default_operators(problem) -> dict:

@@ -147,6 +147,11 @@ class Paths(ABC):
         return sums_of(costs, offsets)
 
     @property
+    def mover_distance(self) -> np.ndarray:
+        """Least distance from an obstacle that moves, in cells, float, shape (N,): infinite for paths that know of none."""
+        return np.full(len(self), np.inf)
+
+    @property
     def interfering_cells(self) -> np.ndarray:
         """Number of occupied cells that each path crosses, int, shape (N,); a legal path has 0, and no other has.
 

@@ -66,6 +66,8 @@ class Planner(Algorithm, ABC):
         Class attribute: whether it plans by diagonal steps, so that it refuses grids without any. Default False.
     takes_operators, takes_pop_size : bool
         Class attributes: whether its constructor takes ``operators`` and ``pop_size``, as `make_algorithm` does. Default False.
+    in_time : bool
+        Class attribute: whether it plans paths in time, too, among obstacles that move. Default False.
     takes_generations : bool
         Class attribute: False, since it plans once.
     success, message
@@ -74,8 +76,8 @@ class Planner(Algorithm, ABC):
     Raises
     ------
     CapabilityError
-        If an argument is unknown; when the run begins, if the paths may turn back and the coding knows none that do, or if it
-        plans by diagonal steps and the grid has none.
+        If an argument is unknown; when the run begins, if the paths may turn back and the coding knows none that do, if it plans
+        by diagonal steps and the grid has none, or if obstacles move of which the planner knows nothing.
     GridPathError
         When the run begins, if the problem is no path problem; when the paths are there, if one is not legal.
 
@@ -102,6 +104,7 @@ class Planner(Algorithm, ABC):
     takes_operators: ClassVar[bool] = False
     takes_pop_size: ClassVar[bool] = False
     takes_generations: ClassVar[bool] = False
+    in_time: ClassVar[bool] = False
 
     # pymoo fills it when the run begins.
     termination: Any
@@ -123,6 +126,12 @@ class Planner(Algorithm, ABC):
             raise CapabilityError(
                 f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(problem.grid.name)} has none; give the "
                 "grid moves=8"
+            )
+        if representation_of(problem).timed and not cls.in_time:
+            raise CapabilityError(
+                f"{cls.__name__} plans paths on a map that stands still, and obstacles of a {type(problem).__name__} move; "
+                f"expected a planner that knows of time, such as {reference_planner()!r}, or a search with "
+                f"path_operators(problem)"
             )
         if cls.turns_back and representation_of(problem).monotone:
             raise CapabilityError(

@@ -58,6 +58,7 @@ class ExactFront(Planner):
 
     name = "exact"
     reference = True
+    in_time = True
 
     def __init__(
         self,

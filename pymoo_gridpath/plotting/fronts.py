@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.decision import NAMES
 from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.plotting import style
@@ -19,7 +18,7 @@ from pymoo_gridpath.plotting.labels import place_labels
 def plot_front(
     trade_off,
     reference=None,
-    which: Sequence[str] = NAMES,
+    which: Sequence[str] | None = None,
     objectives: Sequence[str] | None = None,
     reference_label: str = "reference front",
     ax: Axes | None = None,
@@ -32,8 +31,9 @@ def plot_front(
         Of two or more objectives.
     reference : TradeOffSet or array_like of shape (K, n_obj), optional
         Another front in the same objectives, for instance the true one, drawn under it.
-    which : sequence of str, default ("shortest", "safest", "smoothest", "knee")
-        Names of the paths to mark.
+    which : sequence of str, optional
+        Names of the paths to mark, by default all that there are: "shortest", "safest", "smoothest", "knee" and, of paths in
+        time, "earliest".
     objectives : sequence of two or three str, optional
         Names of the objectives to draw, by default all. Two of three give a projection with the third as colour.
     reference_label : str, default "reference front"

@@ -13,7 +13,6 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, ScaledTranslation
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.decision import NAMES
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError
@@ -87,7 +86,7 @@ def plot_map(
 
 def plot_paths(
     trade_off,
-    which: Sequence[str] = NAMES,
+    which: Sequence[str] | None = None,
     all_paths: bool = True,
     potential: bool | np.ndarray = True,
     units: Units = "cells",
@@ -96,14 +95,16 @@ def plot_paths(
 ) -> Axes:
     """Draw the chosen paths of a trade-off set on their map.
 
-    Of a large map of which little can be reached from the start, that part is drawn, see `OccupancyGrid.box_of`.
+    Of a large map of which little can be reached from the start, that part is drawn, see `OccupancyGrid.box_of`. Of paths in
+    time the ways of the obstacles that move are drawn until the last path arrives, with a square where each is at tick 0; who
+    is where at the same tick a figure of all ticks does not say. The potential is that of what stands still.
 
     Parameters
     ----------
     trade_off : TradeOffSet
-    which : sequence of str, default ("shortest", "safest", "smoothest", "knee")
-        Names of the paths to draw; one path with several names is drawn once. Where paths share cells, they are drawn side
-        by side, by less than a quarter of a cell.
+    which : sequence of str, optional
+        Names of the paths to draw, by default all that there are, see `plot_front`; one path with several names is drawn once.
+        Where paths share cells, they are drawn side by side, by less than a quarter of a cell.
     all_paths : bool, default True
         Whether to draw the other paths as thin grey lines.
     potential : bool or numpy.ndarray of shape (height, width), default True
@@ -145,6 +146,8 @@ def plot_paths(
             label = "other trade-off paths"
             ax.add_collection(LineCollection(others, colors=style.OTHERS, linewidths=0.7, zorder=2, label=label), autolim=False)
         _draw_chosen(ax, trade_off, grid, groups, units)
+        if problem.representation.timed:
+            _draw_movers(ax, trade_off, units)
         for cell, (role, marker, scale) in zip((problem.start, problem.goal), _ENDS, strict=True):
             _draw_mark(ax, problem.grid, grid, cell, role, marker, scale, units)
         style.warn_infeasible(ax, trade_off)
@@ -258,6 +261,19 @@ def _draw_chosen(ax: Axes, trade_off, grid: OccupancyGrid, groups: dict[int, lis
             zorder=4,
             transform=ax.transData + aside,
         )
+
+
+def _draw_movers(ax: Axes, trade_off, units: Units) -> None:
+    """Draw the ways of obstacles that move, until the last path arrives."""
+    problem = trade_off.problem
+    at = problem.representation.timetable.at[: int(trade_off.paths.arrival.max()) + 1]
+    points = (at if units == "cells" else problem.grid.to_metres(at.reshape(-1, 2)).reshape(at.shape)).astype(float)
+    inside = ((at >= 0) & (at < (problem.grid.width, problem.grid.height))).all(axis=2)
+    points[~inside] = np.nan
+    for k in range(at.shape[1]):
+        label = "obstacles that move" if k == 0 else None
+        look = {"color": style.OCCUPIED, "linewidth": 1.0, "linestyle": ":", "marker": "s", "markersize": 5, "zorder": 3}
+        ax.plot(*points[:, k].T, markevery=[0], label=label, **look)
 
 
 def drawn_box(trade_off) -> Box:

@@ -14,6 +14,7 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from numpy.typing import ArrayLike
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.decision.trade_off import names_for
 from pymoo_gridpath.errors import GridPathError
 
 
@@ -28,6 +29,7 @@ class NameStyle:
 
 # Colours of Okabe and Ito's palette; dashes and markers tell the paths apart in grey print too.
 NAME_STYLES = {
+    "earliest": NameStyle("#56B4E9", (0, (7, 1.2)), "v"),
     "shortest": NameStyle("#0072B2", "-", "s"),
     "safest": NameStyle("#009E73", (0, (5, 1.6)), "D"),
     "smoothest": NameStyle("#D55E00", (0, (1.2, 1.2)), "^"),
@@ -161,8 +163,8 @@ def warn_infeasible(ax: Axes, trade_off) -> None:
 
 
 def by_path(trade_off, which) -> dict[int, list[str]]:
-    """Return the names to show by the index of the path that bears them, in the order of the names."""
+    """Return the names to show, by default all, by the index of the path that bears them, in the order of the names."""
     groups: dict[int, list[str]] = {}
-    for name in checks.names("which", which):
+    for name in names_for(trade_off.objective_names) if which is None else checks.names("which", which):
         groups.setdefault(trade_off.index(name), []).append(name)
     return groups

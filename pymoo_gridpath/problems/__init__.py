@@ -11,6 +11,7 @@ from pymoo_gridpath.problems.scenarios import (
     maze_environment,
     random_dense_grid,
 )
+from pymoo_gridpath.problems.timed import TimedPathProblem
 
 __all__ = [
     "OBSTACLES",
@@ -18,6 +19,7 @@ __all__ = [
     "GridPathProblem",
     "MovingObstaclesProblem",
     "ObstacleClock",
+    "TimedPathProblem",
     "concave_environment",
     "convex_environment",
     "far_corners",

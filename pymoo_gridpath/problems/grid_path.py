@@ -123,6 +123,9 @@ class GridPathProblem(Problem):
     [[9.899, 0.0]]
     """
 
+    # Whether obstacles move while a path is on its way, which its representation has to know.
+    timed = False
+
     def __init__(
         self,
         grid: OccupancyGrid,
@@ -150,6 +153,11 @@ class GridPathProblem(Problem):
         fields = [boxed_field_of(objective, grid, box) for objective in self.objectives]
         if representation is None:
             representation = default_representation(grid.corner_cutting, axis)
+        if getattr(representation, "timed", False) and not self.timed:
+            raise GridPathError(
+                f"paths of the {shown(getattr(representation, 'name', ''))} representation are paths in time, expected a "
+                f"TimedPathProblem for them"
+            )
         if isinstance(representation, str | type):
             costs = [
                 visiting_costs(objective, grid, grid.whole, field)

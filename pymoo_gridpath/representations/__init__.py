@@ -8,6 +8,7 @@ from pymoo_gridpath.representations.factory import default_representation, make_
 from pymoo_gridpath.representations.integer import IntegerRepresentation
 from pymoo_gridpath.representations.mixed import MixedRepresentation
 from pymoo_gridpath.representations.monotone import MonotoneRepresentation
+from pymoo_gridpath.representations.timed_paths import TimedPaths
 from pymoo_gridpath.search.moves import Moves
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "MonotoneRepresentation",
     "Moves",
     "Representation",
+    "TimedPaths",
     "default_representation",
     "make_representation",
 ]

@@ -61,6 +61,8 @@ class Representation(ABC):
     wants_fields : bool
         Whether its constructor takes ``fields``, the costs of cells that paths are to be scored by, and ``spare``, by what
         factor paths worth coding may be longer than the cheapest, see `make_representation`.
+    timed : bool
+        Whether its paths are paths in time, a cell a tick, as those of `TimedPaths`.
 
     Examples
     --------
@@ -107,6 +109,7 @@ class Representation(ABC):
     monotone: bool = False
     codes_detours: bool = True
     wants_fields: bool = False
+    timed: bool = False
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int]):
         self.grid: OccupancyGrid = check_grid(grid)

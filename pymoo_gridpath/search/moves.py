@@ -34,6 +34,14 @@ def uncut(grid: OccupancyGrid, free: np.ndarray) -> np.ndarray:
     return bits
 
 
+def ending_in(free: np.ndarray, headings: Iterable[int] = range(8)) -> np.ndarray:
+    """Return the steps along some headings that end in a free cell, bits as in `Moves.legal`; ``free`` as of `uncut`."""
+    bits = np.zeros((free.shape[0] - 2, free.shape[1] - 2), dtype=np.uint8)
+    for m in headings:
+        bits |= _shifted(free, *HEADINGS[m]).astype(np.uint8) << np.uint8(m)
+    return bits
+
+
 def _shifted(padded: np.ndarray, dx: int, dy: int) -> np.ndarray:
     return padded[1 + dy : padded.shape[0] - 1 + dy, 1 + dx : padded.shape[1] - 1 + dx]
 
@@ -84,12 +92,8 @@ class Moves:
         self.height, self.width = self.box.shape
         # A rim of occupied cells stands for the edge of the grid.
         free = np.pad(~grid.occupied[self.box.slices], 1)
-        legal = np.zeros(self.box.shape, dtype=np.uint8)
-        for m in headings:
-            dx, dy = HEADINGS[m]
-            possible = _shifted(free, 0, 0) & _shifted(free, dx, dy)
-            legal |= possible.astype(np.uint8) << np.uint8(m)
-        legal &= uncut(grid, free)
+        legal = ending_in(free, headings) & uncut(grid, free)
+        legal[~_shifted(free, 0, 0)] = 0
         self.legal = legal.ravel()
         self.diagonal = grid.neighbourhood.diagonal
         self.offsets = (HEADINGS[:, 1] * self.width + HEADINGS[:, 0]).astype(np.int64)
