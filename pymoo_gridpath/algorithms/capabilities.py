@@ -169,7 +169,7 @@ _ROWS = (
         dynamic=True,
         smoothness=True,
         extra="scikit-learn",
-        note="Asserts that there are no constraints.",
+        note="Asserts that there are no constraints. Members that it makes between others are rounded.",
     ),
     Capability(
         "PINSGA2",

@@ -62,6 +62,8 @@ class ObstacleClock(TimeSimulation):
 
     Attributes
     ----------
+    problem : MovingObstaclesProblem or None
+        Whose time it is; None before the run.
     n_missed : int
         Members so far that an algorithm had kept with values of an earlier map over a generation.
     epochs : list of int
@@ -107,6 +109,7 @@ class ObstacleClock(TimeSimulation):
         if self.told and not self.renew:
             raise GridPathError("told is True and renew False, expected one of them: what is told has its values renewed")
         self.callback = checks.instance("callback", callback, Callback, " of pymoo", optional=True)
+        self.problem: MovingObstaclesProblem | None = None
         self.n_missed = 0
         self.epochs: list[int] = []
         self.F: list[np.ndarray] = []
@@ -121,6 +124,7 @@ class ObstacleClock(TimeSimulation):
             raise GridPathError(
                 f"ObstacleClock is for a MovingObstaclesProblem, and the problem is of the class {type(problem).__name__}"
             )
+        self.problem = problem
         if problem.ran:
             raise GridPathError(
                 f"the problem is where an earlier run has left it, at generation {problem.tau}, expected problem.restart() or "
@@ -169,7 +173,7 @@ class ObstacleClock(TimeSimulation):
 def _faults(problem: MovingObstaclesProblem, pop: Population, now: Population) -> Faults:
     """Return what is wrong with a population, given the same members as evaluated on the map of now."""
     passing, crossed = (np.asarray(members.get("interfering_cells")) for members in (pop, now))
-    wrong = (pop.get("F") != now.get("F")).any(axis=1)
+    wrong = np.any(pop.get("F") != now.get("F"), axis=1)
     illegal = (passing == 0) & (crossed > 0)
     return Faults(*(int(np.count_nonzero(found)) for found in (problem.is_stale(pop), wrong, illegal)))
 
