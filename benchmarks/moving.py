@@ -5,9 +5,9 @@
 Seeded maps of 20 x 20 cells, one empty and one with a tenth of the cells occupied; three seeded movers, a move every five
 generations, ten epochs. What had been found at the end of each epoch is measured, as it is on the map of that epoch, against
 the exact front of that map. "Untold" is NSGA-II whose clock lets time pass only. "Missed" counts members that an algorithm had
-kept with values of an earlier map over a generation and the clock renewed; of the members of all Results, "stale" counts those
-with values of an earlier map, "wrong" those whose values are others now, and "illegal" those that pass for legal paths and are
-none.
+kept with values of an earlier map over a generation and the clock renewed; of the members at the end of all epochs, "stale"
+counts those with values of an earlier map, "wrong" those whose values are others now, and "illegal" those that pass for legal
+paths and are none.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import argparse
 import sys
 import warnings
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pymoo.optimize import minimize
@@ -61,14 +61,6 @@ def problem_of(density: float) -> MovingObstaclesProblem:
     return MovingObstaclesProblem(base, movers, *ENDS, TAUT)
 
 
-def faults(problem: MovingObstaclesProblem, pop) -> np.ndarray:
-    """Return how many members are stale, how many have wrong values, and how many pass for legal paths and are none."""
-    F, crossed = problem.evaluate(pop.get("X"), return_values_of=["F", "interfering_cells"])
-    wrong = (pop.get("F") != F).any(axis=1)
-    passing = np.asarray(pop.get("interfering_cells")) == 0
-    return np.array([problem.is_stale(pop).sum(), wrong.sum(), (passing & (crossed > 0)).sum()])
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=11, help="runs of each algorithm (default: 11)")
@@ -85,10 +77,10 @@ def main() -> None:
             for seed in range(1, min(arguments.seeds, search.most) + 1):
                 problem.restart()
                 algorithm, clock = make_algorithm(search.name, problem, arguments.members), search.clock()
-                result: Any = minimize(problem, algorithm, ("n_gen", TAUT * N_EPOCHS), seed=seed, callback=clock)
+                minimize(problem, algorithm, ("n_gen", TAUT * N_EPOCHS), seed=seed, callback=clock)
                 ratios.append(mean_hypervolume_ratio(clock.F, fronts))
                 distances.append(mean_igd_plus(clock.F, fronts))
-                missed, found = missed + clock.n_missed, found + faults(problem, result.pop)
+                missed, found = missed + clock.n_missed, found + np.sum(clock.faults, axis=0)
             quality = [np.mean(ratios), min(ratios), np.mean(distances), max(distances)]
             cells = [density, label, len(ratios), *(f"{value:.4f}" for value in quality), missed, *found]
             print(f"| {' | '.join(map(str, cells))} |", flush=True)

@@ -34,6 +34,8 @@ class Capability:
         "ref_dirs" (supplied by `make_algorithm` unless given), "ref_points" or "automated_dm" (the caller's); "" for nothing.
     dynamic : bool
         Made for problems that change with time; on a still one it spends evaluations on looking for a change.
+    moving : bool
+        Goes on where obstacles move, see `MovingObstaclesProblem`: all values that it keeps can be renewed.
     whole_numbers : bool
         Genes stay whole numbers, or bits, within their bounds.
     reproducible, reproducible_constrained : bool
@@ -74,6 +76,7 @@ class Capability:
     repair: bool = True
     needs: str = ""
     dynamic: bool = False
+    moving: bool = True
     whole_numbers: bool = True
     reproducible: bool = True
     reproducible_constrained: bool = True
@@ -166,7 +169,7 @@ _ROWS = (
         dynamic=True,
         smoothness=True,
         extra="scikit-learn",
-        note="Asserts that there are no constraints.",
+        note="Asserts that there are no constraints. Members that it makes between others are rounded.",
     ),
     Capability(
         "PINSGA2",
@@ -194,11 +197,13 @@ _ROWS = (
         "CTAEA",
         _MOO + "ctaea",
         needs="ref_dirs",
+        moving=False,
         one_child=True,
         pickles=False,
         unpacks=False,
         note=_LOCAL_FUNCTION
-        + " The operators' crossover gives two children, and a first population with duplicates never ends.",
+        + " The operators' crossover gives two children, and a first population with duplicates never ends. "
+        "Refuses obstacles that move, since the values in its second archive cannot be renewed.",
     ),
     Capability(
         "RVEA",

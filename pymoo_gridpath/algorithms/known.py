@@ -18,6 +18,7 @@ from pymoo_gridpath.algorithms.moead import SmoothMOEAD
 from pymoo_gridpath.errors import CapabilityError, counted
 from pymoo_gridpath.operators.sets import MEMBERS
 from pymoo_gridpath.planners import PLANNERS, Planner
+from pymoo_gridpath.problems import MovingObstaclesProblem
 from pymoo_gridpath.registry import ALGORITHMS, key_of
 
 _PACKAGES = {"scikit-learn": "sklearn"}
@@ -166,3 +167,7 @@ def refuse_problem(row: Capability, problem) -> None:
         raise CapabilityError(f"{row.name} takes {most}, the problem has {problem.n_obj}")
     if problem.has_constraints() and not row.constraints:
         raise CapabilityError(f"{row.name} cannot solve problems with constraints; use obstacles='penalty'")
+    if isinstance(problem, MovingObstaclesProblem) and not row.moving:
+        raise CapabilityError(
+            f"{row.name} keeps members beside its population, whose values cannot be renewed when obstacles move; use 'DNSGA2'"
+        )

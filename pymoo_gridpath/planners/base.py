@@ -76,8 +76,8 @@ class Planner(Algorithm, ABC):
     Raises
     ------
     CapabilityError
-        If an argument is unknown; when the run begins, if the paths may turn back and the coding knows none that do, if it plans
-        by diagonal steps and the grid has none, or if obstacles move of which the planner knows nothing.
+        If an argument is unknown; when the run begins, if the paths may turn back and the coding knows none that do, if it
+        plans by diagonal steps and the grid has none, or if obstacles move of which the planner knows nothing.
     GridPathError
         When the run begins, if the problem is no path problem; when the paths are there, if one is not legal.
 

@@ -101,7 +101,7 @@ def as_reference(trade_off, reference) -> np.ndarray | None:
     return values
 
 
-def _staircase(F: np.ndarray) -> np.ndarray:
+def staircase(F: np.ndarray) -> np.ndarray:
     """Return the corners of the edge of the region that mutually non-dominated points in two objectives dominate."""
     F = F[np.lexsort(F.T[::-1])]
     corners = np.column_stack([F[1:, 0], F[:-1, 1]])
@@ -118,13 +118,13 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         shown = other[:, columns]
         if whole:
             shown = shown[np.lexsort(shown.T[::-1])]
-            lines.append(_staircase(shown))
+            lines.append(staircase(shown))
             ax.plot(*lines[-1].T, color=style.REFERENCE, linewidth=0.7, linestyle=(0, (4, 2)), zorder=1)
         look = {"s": 16, "marker": "o", "facecolors": "none", "edgecolors": style.REFERENCE, "linewidths": 0.7}
         ax.scatter(*shown.T, **look, label=reference_label, zorder=2)
         lines += [shown[[k]] for k in range(len(shown))]
     if whole:
-        stairs = _staircase(F)
+        stairs = staircase(F)
         ax.plot(*stairs.T, color=style.OTHERS, linewidth=0.8, zorder=2)
         lines.append(stairs)
     rest = [k for k in range(trade_off.F.shape[1]) if k not in columns]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pymoo.core.callback import Callback
@@ -14,6 +14,27 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.problems.members import Members
 from pymoo_gridpath.problems.moving import MovingObstaclesProblem
+
+# Where pymoo's algorithms keep the members that they go on from, the children of a generation, and the best members.
+_OF_POPULATION = ("pop", "off", "opt")
+
+
+class Faults(NamedTuple):
+    """How many members of a population are not what they pass for, of the map that there is now.
+
+    Attributes
+    ----------
+    stale : int
+        Evaluated on another map.
+    wrong : int
+        With objectives that are others now.
+    illegal : int
+        Which pass for legal paths and cross an obstacle.
+    """
+
+    stale: int
+    wrong: int
+    illegal: int
 
 
 class ObstacleClock(TimeSimulation):
@@ -41,6 +62,8 @@ class ObstacleClock(TimeSimulation):
 
     Attributes
     ----------
+    problem : MovingObstaclesProblem or None
+        Whose time it is; None before the run.
     n_missed : int
         Members so far that an algorithm had kept with values of an earlier map over a generation.
     epochs : list of int
@@ -51,12 +74,19 @@ class ObstacleClock(TimeSimulation):
         Its genes.
     evaluations : list of int
         Those made until then.
+    missed : list of int
+        ``n_missed`` of each epoch.
+    faults : list of (int, int, int)
+        How many members the algorithm had at the end of each with values of another map (``stale``), with objectives that were
+        others then (``wrong``), and that passed for legal paths and crossed an obstacle (``illegal``): none, where values are
+        renewed. All members are evaluated on the side to know.
 
     Raises
     ------
     GridPathError
         If an argument is of another kind, or an algorithm is told by a clock that renews nothing; in the run, if the problem
-        does not move, or an earlier run has left it at a later time.
+        does not move, an earlier run has left it at a later time, or values are to be renewed in an algorithm that keeps
+        further members beside its population.
 
     Examples
     --------
@@ -79,11 +109,14 @@ class ObstacleClock(TimeSimulation):
         if self.told and not self.renew:
             raise GridPathError("told is True and renew False, expected one of them: what is told has its values renewed")
         self.callback = checks.instance("callback", callback, Callback, " of pymoo", optional=True)
+        self.problem: MovingObstaclesProblem | None = None
         self.n_missed = 0
         self.epochs: list[int] = []
         self.F: list[np.ndarray] = []
         self.X: list[np.ndarray] = []
         self.evaluations: list[int] = []
+        self.missed: list[int] = []
+        self.faults: list[Faults] = []
 
     def initialize(self, algorithm: Any) -> None:
         problem = algorithm.problem
@@ -91,10 +124,16 @@ class ObstacleClock(TimeSimulation):
             raise GridPathError(
                 f"ObstacleClock is for a MovingObstaclesProblem, and the problem is of the class {type(problem).__name__}"
             )
+        self.problem = problem
         if problem.ran:
             raise GridPathError(
                 f"the problem is where an earlier run has left it, at generation {problem.tau}, expected problem.restart() or "
                 "problem.tau = ... before a run"
+            )
+        if self.renew and _keeps_more(algorithm):
+            raise GridPathError(
+                f"{type(algorithm).__name__} keeps members beside its population, whose values ObstacleClock cannot renew when "
+                "the obstacles move, expected another algorithm"
             )
 
     def update(self, algorithm: Any) -> None:
@@ -119,15 +158,29 @@ class ObstacleClock(TimeSimulation):
     def _keep(self, algorithm: Any) -> None:
         """Keep what has been found on the map of now."""
         problem, pop = algorithm.problem, algorithm.pop
-        if problem.is_stale(pop).any():
-            # On the side, so that the search goes on as it would.
-            pop = Evaluator().eval(problem, Population.new("X", pop.get("X")))
-        members = Members(algorithm, pop)
+        # On the side, so that the search goes on as it would.
+        now = Evaluator().eval(problem, Population.new("X", pop.get("X")))
+        members = Members(algorithm, now)
         front = members.front()
         self.epochs.append(problem.epoch)
         self.F.append(members.F[front])
         self.X.append(members.X(front, problem.n_var))
         self.evaluations.append(int(algorithm.evaluator.n_eval))
+        self.missed.append(self.n_missed - sum(self.missed))
+        self.faults.append(_faults(problem, pop, now))
+
+
+def _faults(problem: MovingObstaclesProblem, pop: Population, now: Population) -> Faults:
+    """Return what is wrong with a population, given the same members as evaluated on the map of now."""
+    passing, crossed = (np.asarray(members.get("interfering_cells")) for members in (pop, now))
+    wrong = np.any(pop.get("F") != now.get("F"), axis=1)
+    illegal = (passing == 0) & (crossed > 0)
+    return Faults(*(int(np.count_nonzero(found)) for found in (problem.is_stale(pop), wrong, illegal)))
+
+
+def _keeps_more(algorithm: Any) -> bool:
+    """Return whether an algorithm goes on from members that are not of its population, as C-TAEA does."""
+    return any(isinstance(value, Population) for name, value in vars(algorithm).items() if name not in _OF_POPULATION)
 
 
 def _is_told(algorithm: Any) -> bool:

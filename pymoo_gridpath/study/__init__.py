@@ -7,6 +7,7 @@ _HOMES = {
     "AlgorithmSpec": "specification.algorithm",
     "History": "running.record",
     "LocalProcesses": "running.processes",
+    "MovingObstacles": "specification.moving",
     "Outcome": "running.runner",
     "ProblemSpec": "specification.problem",
     "QueryRange": "specification.problem",

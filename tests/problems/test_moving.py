@@ -13,8 +13,8 @@ from pymoo.optimize import minimize
 from pymoo.problems.dyn import DynamicTestProblem, TimeSimulation
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
-from pymoo_gridpath.algorithms import make_algorithm, minimize_runs
-from pymoo_gridpath.errors import GridError, GridPathError, UnreachableError
+from pymoo_gridpath.algorithms import CAPABILITIES, make_algorithm, minimize_runs
+from pymoo_gridpath.errors import CapabilityError, GridError, GridPathError, UnreachableError
 from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.operators.path_terrain import terrain_of
 from pymoo_gridpath.planners import PathOutput
@@ -154,9 +154,33 @@ def test_evaluations_anew_are_counted(monkeypatch):
     monkeypatch.setattr(problem, "_evaluate", lambda x, *args, **kwargs: asked.append(len(x)) or evaluate(x, *args, **kwargs))
     clock = ObstacleClock()
     result = minimize(problem, make_algorithm("NSGA2", problem, 10), ("n_gen", 7), seed=1, callback=clock)
-    # Once a generation, and all members when the map changed after the third and the sixth.
-    assert len(asked) == 7 + 2 and result.algorithm.evaluator.n_eval == sum(asked)
+    # Once a generation, all members when the map changed after the third and the sixth, and on the side as the epochs ended.
+    assert len(asked) == 7 + 2 + 3 and result.algorithm.evaluator.n_eval == sum(asked) - 3 * len(result.pop)
     assert result.algorithm.callback.n_missed == 0
+
+
+def test_an_algorithm_that_keeps_more_than_its_population_is_refused():
+    *_, problem = make()
+    with pytest.raises(CapabilityError, match="CTAEA keeps members beside its population"):
+        make_algorithm("CTAEA", problem)
+    given = make_algorithm("NSGA2", problem, 10)
+    given.second = Population.new("X", np.zeros((2, problem.n_var), dtype=int))
+    with pytest.raises(GridPathError, match=r"NSGA2 keeps members beside its population, .* expected another algorithm"):
+        minimize(problem, given, ("n_gen", 2), callback=ObstacleClock())
+    minimize(problem, given, ("n_gen", 2), callback=ObstacleClock(renew=False))
+
+
+def test_all_others_go_on_and_return_what_is_true():
+    """Of those whose row says so; pymoo's own survivals among them, which keep ideal points and ranks."""
+    for name, row in CAPABILITIES.items():
+        if row.unfit or not row.moving or row.extra or row.needs in ("ref_points", "automated_dm") or name in ALGORITHMS:
+            continue
+        grid, movers, problem = make(1, taut=2, n_epochs=4)
+        if not row.takes(2):
+            problem = MovingObstaclesProblem(grid, movers, START, GOAL, 2, objectives=["length"])
+        result = minimize(problem, make_algorithm(name, problem, 10), ("n_gen", 8), seed=1, callback=(clock := ObstacleClock()))
+        assert clock.faults == [(0, 0, 0)] * 4 and all(map(len, clock.F)), name
+        assert np.array_equal(problem.still.evaluate(result.pop.get("X"), return_values_of=["F"]), result.pop.get("F")), name
 
 
 def test_the_distance_shown_is_that_to_the_front_of_now():
@@ -254,6 +278,7 @@ def test_the_clock_keeps_what_was_found_in_each_epoch():
         assert len(F) and np.array_equal(still.evaluate(X, return_values_of=["F"]), F)
         assert (still.decode(X).interfering_cells == 0).all()
         assert problem.stills[epoch].grid == still.grid
+    assert clock.faults == [(0, 0, 0)] * 4 and clock.missed == [0] * 4
     np.testing.assert_array_equal(np.unique(result.F, axis=0), clock.F[-1])
     fronts = [still.pareto_front() for still in problem.stills]
     ratios = [hypervolume_ratio(F, front) for F, front in zip(clock.F, fronts, strict=True)]
@@ -275,6 +300,12 @@ def test_a_clock_that_renews_nothing_keeps_what_is_true_all_the_same():
     assert result.algorithm.evaluator.n_eval == other.algorithm.evaluator.n_eval
     for epoch, X, F in zip(clock.epochs, clock.X, clock.F, strict=True):
         assert np.array_equal(problem.stills[epoch].evaluate(X, return_values_of=["F"]).reshape(F.shape), F)
+    # The members that it returns are what the map of the end says of them.
+    crossed = problem.still.decode(result.pop.get("X")).interfering_cells
+    wrong = (problem.still.evaluate(result.pop.get("X"), return_values_of=["F"]) != result.pop.get("F")).any(axis=1)
+    illegal = (np.asarray(result.pop.get("interfering_cells")) == 0) & (crossed > 0)
+    assert clock.faults[-1] == (problem.is_stale(result.pop).sum(), wrong.sum(), illegal.sum())
+    assert clock.faults[0] == (0, 0, 0) and clock.faults[-1].stale >= wrong.sum() > 0 and clock.missed == [0] * 4
     with pytest.raises(GridPathError, match="told is True and renew False"):
         ObstacleClock(told=True, renew=False)
 

@@ -21,6 +21,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.representations import Representation, make_representation
+from pymoo_gridpath.study.planning.moving import build_moving, fresh
 from pymoo_gridpath.study.specification import made, own
 from pymoo_gridpath.study.specification.kinds import ALGORITHM, OBJECTIVE, REPRESENTATION
 from pymoo_gridpath.study.specification.operators import make_operator, planner_of
@@ -79,6 +80,8 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
 def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> GridPathProblem:
     """Return the problem that a canonical form describes; the last few are kept, and must not be changed.
 
+    One whose obstacles move has a time of its own, and begins with the first epoch.
+
     Parameters
     ----------
     problem : mapping
@@ -94,21 +97,26 @@ def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> Grid
     key = json.dumps(problem, sort_keys=True)
     kept = _problems.get(key)
     if kept is None:
-        settings = {name: problem[name] for name in ("obstacles", "penalty", "potential_limit")}
-        cells, query = build_grid(problem["grid"], grid), (problem["start"], problem["goal"])
+        cells = build_grid(problem["grid"], grid)
         objectives = [one if isinstance(one, str) else own.make(one, OBJECTIVE) for one in problem["objectives"]]
-        representation, axis = problem["representation"], problem["axis"]
-        if not isinstance(representation, str):
-            if representation["arguments"]:
-                representation, axis = build_representation(representation, cells, *query, axis), "auto"
-            else:
-                # As a class, which is told of the objectives if it asks.
-                representation = own.class_of(representation, REPRESENTATION)
-        kept = GridPathProblem(cells, *query, representation, objectives, axis=axis, **settings)
+        kept = (build_moving if "moving" in problem else _build_still)(problem, cells, objectives)
         _problems[key] = kept
         while len(_problems) > KEPT_PROBLEMS:
             _problems.popitem(last=False)
-    return kept
+    return fresh(kept)
+
+
+def _build_still(problem: Mapping[str, Any], grid: OccupancyGrid, objectives: list) -> GridPathProblem:
+    settings = {name: problem[name] for name in ("obstacles", "penalty", "potential_limit")}
+    query = problem["start"], problem["goal"]
+    representation, axis = problem["representation"], problem["axis"]
+    if not isinstance(representation, str):
+        if representation["arguments"]:
+            representation, axis = build_representation(representation, grid, *query, axis), "auto"
+        else:
+            # As a class, which is told of the objectives if it asks.
+            representation = own.class_of(representation, REPRESENTATION)
+    return GridPathProblem(grid, *query, representation, objectives, axis=axis, **settings)
 
 
 def build_representation(content: Any, grid: OccupancyGrid, start, goal, axis: Any) -> Representation:

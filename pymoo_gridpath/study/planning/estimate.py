@@ -6,10 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pymoo.core.callback import Callback
+
 from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.planning.build import build_algorithm, build_planner, build_problem, build_termination
+from pymoo_gridpath.study.planning.moving import clock_of
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, Task, has_own_budget, needed_for
 
 # Share of the time of a measurement that getting ready for it may take: compiled functions are loaded in the first one.
@@ -100,7 +103,8 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
         return _measure_planner(task.algorithm, problem, max_seconds)
     assert task.budget is not None
     algorithm: Any = build_algorithm(task.algorithm, problem)
-    algorithm.setup(problem, termination=build_termination(task.budget, algorithm), seed=task.seed)
+    termination = build_termination(task.budget, algorithm)
+    algorithm.setup(problem, termination=termination, seed=task.seed, callback=clock_of(problem, Callback()))
     wanted = next(iter(task.budget.values()))
     records: list[tuple[float, int]] = []
     while algorithm.has_next() and (not records or records[-1][0] < max_seconds):
@@ -117,11 +121,13 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
 
 def _measure_planner(algorithm: Mapping[str, Any], problem, max_seconds: float) -> tuple[float, bool]:
     begin = working_seconds()
-    search, bounded = build_planner(algorithm, problem, max_seconds=max_seconds)
-    search.setup(problem, seed=1)
+    # Where obstacles move, it plans anew on each map.
+    first, n_maps = problem.stills[0], len(problem.stills)
+    search, bounded = build_planner(algorithm, first, max_seconds=max_seconds)
+    search.setup(first, seed=1)
     search.next()
     took = working_seconds() - begin
     given = {**algorithm, **algorithm.get("parameters", {})}
     if search.success or not bounded or given.get("max_labels") is not None:
-        return took, False
-    return max(took, given.get("max_seconds") or 0.0), True
+        return n_maps * took, False
+    return n_maps * max(took, given.get("max_seconds") or 0.0), True

@@ -13,8 +13,10 @@ from pymoo_gridpath.algorithms import CAPABILITIES, find_algorithm
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.algorithms.paper import POP_SIZE
 from pymoo_gridpath.planners import reference_planner
+from pymoo_gridpath.problems import MovingObstaclesProblem
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_representation
+from pymoo_gridpath.study.planning.moving import budget_of
 from pymoo_gridpath.study.planning.plan import (
     MAX_RUNS,
     Plan,
@@ -74,7 +76,7 @@ def plan_study(study: Study) -> Plan:
     runs = _runs(study, problems, algorithms)
     if reference is not None:
         problems, runs = _with_references(problems, runs, reference)
-    return Plan(study.name, study.budget, study.target, tuple(problems), tuple(algorithms), tuple(runs), reference)
+    return Plan(study.name, study.budget or {}, study.target, tuple(problems), tuple(algorithms), tuple(runs), reference)
 
 
 # -- algorithms ---------------------------------------------------------------------------------------------------------
@@ -193,7 +195,7 @@ def _check_promises(study: Study, k: int, problem, algorithm: Mapping[str, Any],
             f"expected obstacles 'penalty', or another algorithm",
             ("algorithms", k),
         )
-    most = study.budget.get("evaluations")
+    most = None if isinstance(problem, MovingObstaclesProblem) else (study.budget or {}).get("evaluations")
     if most is not None and "pop_size" in algorithm and most < built.pop_size:
         raise study.error(
             f"pop_size is {built.pop_size}, expected at most the {most} evaluations of the budget",
@@ -211,7 +213,7 @@ def _runs(study: Study, problems: list[PlannedProblem], algorithms: list[Planned
     for i, problem in enumerate(problems):
         for j, algorithm in enumerate(algorithms):
             content, settled = canonical.resolve(problem.spec, algorithm.spec, algorithm.overrides)
-            budget = None if has_own_budget(settled) else study.budget
+            budget = None if has_own_budget(settled) else budget_of(content, study.budget or {})
             for seed in (0,) if is_deterministic(settled) else study.seeds:
                 run = PlannedRun(run_key(content, settled, budget, seed), i, j, seed)
                 if run.key in seen:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.memory import needed
 from pymoo_gridpath.study.planning.canonical import n_cells, resolve
+from pymoo_gridpath.study.planning.moving import budget_of
 from pymoo_gridpath.study.planning.stored import check_plan
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name
@@ -123,7 +124,7 @@ class Plan:
     ----------
     name : str
     budget : dict
-        ``{"evaluations": n}`` or ``{"generations": n}``.
+        ``{"evaluations": n}`` or ``{"generations": n}``, of runs on problems whose obstacles do not move; empty without any.
     target : float
         Share of the reference's hypervolume that "to target" asks for.
     problems : tuple of PlannedProblem
@@ -151,7 +152,7 @@ class Plan:
         else:
             spec, overrides = self.algorithms[run.algorithm].spec, self.algorithms[run.algorithm].overrides
         problem, algorithm = resolve(planned.spec, spec, overrides)
-        budget = None if has_own_budget(algorithm) else self.budget
+        budget = None if has_own_budget(algorithm) else budget_of(problem, self.budget)
         return Task(run.key, problem, algorithm, budget, run.seed, planned.grid)
 
     def to_json(self) -> dict[str, Any]:

@@ -16,9 +16,11 @@ from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.neighbourhood import neighbourhood_of
 from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.planning import canonical
-from pymoo_gridpath.study.planning.build import build_grid, pack_grid
+from pymoo_gridpath.study.planning.build import build_grid, build_problem, pack_grid
+from pymoo_gridpath.study.planning.moving import moving_entry
 from pymoo_gridpath.study.planning.plan import PlannedProblem, run_key
 from pymoo_gridpath.study.specification.kinds import objective_entry, representation_entry
+from pymoo_gridpath.study.specification.moving import REPRESENTATION
 from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange
 from pymoo_gridpath.study.specification.study import Study
 
@@ -46,7 +48,10 @@ def plan_problems(study: Study) -> tuple[list[PlannedProblem], list[int]]:
             if label in labels:
                 raise study.error(f"the problem {label!r} has the name of another; give one of them another name", place_of(k))
             labels[label] = k
-            problems.append(PlannedProblem(label, spec.label, _settings(spec, item), item.cells, source=_source(spec, items)))
+            content = _settings(spec, item)
+            if spec.moving is not None:
+                content |= _moving(study, k, spec, item, content)
+            problems.append(PlannedProblem(label, spec.label, content, item.cells, source=_source(spec, items)))
             groups.append(k)
     _refuse_twins(study, problems, groups)
     return problems, groups
@@ -140,10 +145,21 @@ def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: Occ
     return [(str(n), found[n].start, found[n].goal) for n in numbers]
 
 
+def _moving(study: Study, k: int, spec: ProblemSpec, item: _Item, content: dict[str, Any]) -> dict[str, Any]:
+    """Return the obstacles that move in a problem in canonical form, once they are known to leave a way in every epoch."""
+    where, about = (*place_of(k), "moving"), f"problem {spec.label!r}{f', {item.suffix}' * bool(item.suffix)}: "
+    grid = build_grid(item.grid, item.cells)
+    found = {"moving": refuse(study, where, about, moving_entry, spec.moving, grid, item.start, item.goal)}
+    refuse(study, where, about, build_problem, content | found, item.cells)
+    return found
+
+
 def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
-    """Return the canonical form of a problem."""
+    """Return the canonical form of a problem, but for obstacles that move."""
     corner_cutting = item.grid.get("random", item.grid)["corner_cutting"]
-    default = default_representation(corner_cutting, spec.axis)  # pyright: ignore[reportArgumentType]
+    default: Any = REPRESENTATION
+    if spec.moving is None:
+        default = default_representation(corner_cutting, spec.axis)  # pyright: ignore[reportArgumentType]
     return canonical.settle(
         {
             "grid": item.grid,

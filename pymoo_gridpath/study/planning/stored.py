@@ -13,7 +13,7 @@ from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.planners import Planner, reference_planner
 from pymoo_gridpath.registry import SLOTS, key_of
 from pymoo_gridpath.representations import Representation
-from pymoo_gridpath.study.specification import own, values
+from pymoo_gridpath.study.specification import moving, own, values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec
 from pymoo_gridpath.study.specification.kinds import is_monotone, objective_name, of_package, operators_of_package
@@ -49,12 +49,13 @@ def check_plan(data: Any) -> None:
     if reference is not None:
         reference = _planner(reference, ("reference",))
     # What stands in a study as in its plan, so that the study checks it.
+    moves = bool(problems) and all("moving" in problem["spec"] for problem in problems)
     Study(
-        problems=[ProblemSpec(map="checked")],
+        problems=[ProblemSpec(map="checked", moving={"movers": [[[0, 0]]]} if moves else None)],
         algorithms=[AlgorithmSpec(algorithm=reference_planner())],
         seeds=1,
         name=plan["name"],
-        budget=plan["budget"],
+        budget=None if moves and plan["budget"] == {} else plan["budget"],
         target=plan["target"],
         reference=False if reference is None else {key: value for key, value in reference.items() if key != "algorithm"},
     )
@@ -96,7 +97,7 @@ def _check_problem(problem: Mapping[str, Any], where: Where) -> None:
     if reference is not None and not _is_key(reference):
         raise StudyError(f"reference is {values.show(reference)}, expected the key of a run, or none", (*where, "reference"))
     place = (*where, "spec")
-    spec = _table(problem["spec"], ("grid", "start", "goal", *_SETTINGS), place, "the problem")
+    spec = _table(problem["spec"], ("grid", "start", "goal", *_SETTINGS), place, "the problem", ("moving",))
     width, height = _check_grid(spec["grid"], (*place, "grid"))
     for role in ("start", "goal"):
         x, y = values.cell(spec[role], (*place, role))
@@ -105,6 +106,9 @@ def _check_problem(problem: Mapping[str, Any], where: Where) -> None:
     settings = {key: spec[key] for key in _SETTINGS}
     settings["objectives"] = names = _own_objectives(spec["objectives"], (*place, "objectives"))
     settings["representation"] = _own_representation(spec["representation"], (*place, "representation"))
+    if "moving" in spec:
+        moving.check_entry(spec["moving"], (*place, "moving"))
+        settings["moving"] = spec["moving"]
     made = _at(place, make_spec, ProblemSpec, {"map": "checked", **settings}, ())
     if list(made.objectives) != names:
         raise StudyError(f"objectives is {values.show(spec['objectives'])}, expected a list of names", (*place, "objectives"))
@@ -265,8 +269,14 @@ def _check_groups(problems: list[dict[str, Any]]) -> None:
             if first[key] != spec[key] and key != "penalty":
                 shown = values.show(spec[key])
                 raise StudyError(f"{key} is {shown}, expected that of the others of its group", ("problems", k, "spec", key))
+        if _clock(first) != _clock(spec):
+            raise StudyError("moving has other epochs than those of its group", ("problems", k, "spec", "moving"))
         if ("random" in first["grid"]) != ("random" in spec["grid"]):
             raise StudyError("grid is of another kind than those of its group", ("problems", k, "spec", "grid"))
+
+
+def _clock(spec: Mapping[str, Any]) -> tuple[int, int] | None:
+    return (spec["moving"]["every"], moving.n_epochs(spec["moving"])) if "moving" in spec else None
 
 
 def _check_limits(problems: list[dict[str, Any]], algorithms: list[Mapping[str, Any]]) -> None:

@@ -7,8 +7,11 @@ import warnings
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from pymoo.core.callback import Callback
+
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
 from pymoo_gridpath.study.planning.canonical import n_cells
+from pymoo_gridpath.study.planning.moving import clock_of, tried
 
 # Of a trial, where the algorithm takes so few.
 _POP_SIZE = 12
@@ -46,6 +49,7 @@ class Pair(NamedTuple):
         """The same for pairs of which one trial is enough: what operators and algorithms tell apart."""
         grid = self.problem["grid"]
         of_problem = [self.problem["representation"], self.problem["obstacles"], len(self.problem["objectives"])]
+        of_problem.append("moving" in self.problem)
         return json.dumps([*of_problem, grid.get("random", grid)["corner_cutting"], self.algorithm], sort_keys=True)
 
 
@@ -70,11 +74,14 @@ def run_briefly(pair: Pair) -> None:
 
 def _small(pair: Pair) -> Pair:
     problem, algorithm, grid = dict(pair.problem), dict(pair.algorithm), pair.grid
+    stand_in = None
     if n_cells(problem["grid"]) > _MOST_CELLS:
         kept = problem["grid"].get("random", problem["grid"])["corner_cutting"]
         last = _STAND_IN["size"] - 1
-        grid = None
-        problem |= {"grid": {"random": {**_STAND_IN, "corner_cutting": kept}}, "start": [0, 0], "goal": [last, last]}
+        grid, stand_in = None, {**_STAND_IN, "corner_cutting": kept}
+        problem |= {"grid": {"random": stand_in}, "start": [0, 0], "goal": [last, last]}
+    if "moving" in problem:
+        problem = tried(problem, stand_in)
     if "pop_size" in algorithm:
         algorithm["pop_size"] = min(algorithm["pop_size"], _POP_SIZE)
     if "n_offsprings" in algorithm.get("parameters", {}):
@@ -90,7 +97,8 @@ def _run(pair: Pair) -> None:
     algorithm: Any = build_algorithm(pair.algorithm, problem)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of so few members
-        algorithm.setup(problem, termination=build_termination({"generations": 2}, algorithm), seed=1)
+        termination, clock = build_termination({"generations": 2}, algorithm), clock_of(problem, Callback())
+        algorithm.setup(problem, termination=termination, seed=1, callback=clock)
         for _ in range(2):
             if algorithm.has_next():
                 algorithm.next()

@@ -21,7 +21,8 @@ from pymoo_gridpath.study.planning.build import pack_grid
 from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.figures.style import check_formats
 from pymoo_gridpath.study.report.page.contents import Contents
-from pymoo_gridpath.study.report.results import ProblemReference, Results, RunResult, measure
+from pymoo_gridpath.study.report.references import ProblemReference
+from pymoo_gridpath.study.report.results import Results, RunResult, measure
 from pymoo_gridpath.study.report.tables.csv_files import csv_files
 from pymoo_gridpath.study.report.writing import write_files
 from pymoo_gridpath.study.running.record import RunRecord
@@ -162,7 +163,7 @@ def _measured(by_problem: dict[str, list[tuple[str, Result]]], name: str, target
         measured.references.append(reference)
         for (label, _), record in zip(runs, records, strict=True):
             found = RunResult(record.key, k, places[label], record.seed, record.status)
-            measure(found, record, reference.front, target, keep_front=True)
+            measure(found, record, reference, target, keep_front=True)
             measured.runs.append(found)
     return measured
 

@@ -8,15 +8,14 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.quality import ReferenceFront, merge_fronts
-from pymoo_gridpath.study.planning.canonical import resolve
-from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, has_own_budget, is_deterministic, is_truth
+from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, has_own_budget, is_deterministic
+from pymoo_gridpath.study.report import moving
+from pymoo_gridpath.study.report.references import ProblemReference, reference_of
 from pymoo_gridpath.study.report.statistics.summaries import first_reaching
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord
 from pymoo_gridpath.study.running.store import Store, readable
@@ -58,13 +57,15 @@ class RunResult:
     F : numpy.ndarray or None, shape (N, n_obj)
         Its legal non-dominated points, kept for the first problem of each group.
     ratio, igd_plus, share : float
-        NaN unless finished, as all numbers that follow.
+        NaN unless finished, as all numbers that follow. Where obstacles move, means over the epochs.
     turn : float
         Mean total turn of the paths of its front in degrees, ``inf`` if there is none.
     n_points, n_members, n_eval, n_gen, seconds : float
     evaluations_to_target, seconds_to_target : float
         ``inf`` if the target was not reached.
     curve : Curve or None
+    epochs : EpochMeasures or None
+        None where obstacles do not move.
     """
 
     key: str
@@ -87,6 +88,7 @@ class RunResult:
     evaluations_to_target: float = math.nan
     seconds_to_target: float = math.nan
     curve: Curve | None = None
+    epochs: moving.EpochMeasures | None = None
 
     @property
     def finished(self) -> bool:
@@ -95,29 +97,8 @@ class RunResult:
 
     @property
     def feasible(self) -> bool:
-        """Whether it ended with a legal path."""
-        return self.n_points > 0
-
-
-@dataclass(frozen=True, eq=False)
-class ProblemReference:
-    """The front of a problem, and why it is not the exact one if so.
-
-    Attributes
-    ----------
-    front : ReferenceFront
-    reason : str
-        Empty if the front is exact.
-    seconds : float
-        What the exact front took; NaN if there was no such run.
-    exceeded : bool
-        Whether runs found legal points beyond the front, which overridden representations or obstacle rules allow.
-    """
-
-    front: ReferenceFront
-    reason: str
-    seconds: float
-    exceeded: bool
+        """Whether it ended with a legal path; where obstacles move, each of its epochs."""
+        return self.n_points > 0 and (self.epochs is None or bool((self.epochs.n_points > 0).all()))
 
 
 @dataclass(eq=False)
@@ -224,7 +205,7 @@ def collect(store: Store, target: float | None = None) -> Results:
         if wanted is not None and wanted not in records:
             records[wanted] = _read(store, wanted)
         _check_objectives(plan, problem, records)
-        reference = _reference(plan, problem, records)
+        reference = reference_of(plan, problem, records)
         results.references.append(reference)
         for run in runs:
             record, status = records[run.key]
@@ -233,7 +214,7 @@ def collect(store: Store, target: float | None = None) -> Results:
             else:
                 result = RunResult(run.key, run.problem, run.algorithm, run.seed, status)
                 if record is not None:
-                    measure(result, record, reference.front, results.target, keep_front=problem in keep)
+                    measure(result, record, reference, results.target, keep_front=problem in keep)
                 measured[run.key] = result
     results.runs = [measured[run.key] for run in plan.runs if run.algorithm is not None]
     return results
@@ -268,35 +249,9 @@ def _count_origins(results: Results, records: list[RunRecord]) -> None:
         results.versions[json.dumps(record.versions, sort_keys=True)] += 1
 
 
-def _reference(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | None, str]]) -> ProblemReference:
-    """Return the exact front of a problem, or the merged front of all runs and why."""
-    planned = plan.problems[problem]
-    exact, status = records.get(planned.reference or "", (None, "missing"))
-    finished = [record for record, status in records.values() if record is not None and status == "finished"]
-    fronts = [record.F for record in finished if len(record.F)]
-    whole = [record for record in finished if record.complete and is_truth(record.algorithm)]
-    if exact not in whole:
-        # An exact front among the algorithms serves as well, unless it is that of a problem with overrides.
-        same = (record for record in whole if record.problem == resolve(planned.spec, record.algorithm, {})[0])
-        exact = next(same, exact)
-    seconds = exact.seconds if exact is not None else math.nan
-    if exact is not None and exact in whole:
-        front = ReferenceFront(exact.F, exact=True)
-        return ProblemReference(front, "", seconds, bool(fronts) and front.exceeded_by(np.concatenate(fronts)))
-    if planned.reference is None:
-        reason = "the study asks for no exact front of this problem, or it has none"
-    elif exact is None:
-        reason = f"the run of the exact front is {status}"
-    elif status == "failed":
-        reason = f"the run of the exact front failed: {gist(exact.message)}"
-    else:
-        reason = f"the exact front is not complete: {gist(exact.message)}"
-    empty = np.empty((0, len(planned.spec["objectives"])))
-    return ProblemReference(ReferenceFront(merge_fronts([empty, *fronts]), exact=False), reason, seconds, False)
-
-
-def measure(result: RunResult, record: RunRecord, front: ReferenceFront, target: float, keep_front: bool) -> None:
+def measure(result: RunResult, record: RunRecord, reference: ProblemReference, target: float, keep_front: bool) -> None:
     """Enter what a record says, and its measures if it is finished."""
+    front = reference.front
     result.message, result.complete = record.message, record.complete
     if record.status != "finished":
         return
@@ -304,6 +259,10 @@ def measure(result: RunResult, record: RunRecord, front: ReferenceFront, target:
     result.ratio = front.hypervolume_ratio(record.F)
     result.igd_plus = front.igd_plus(record.F)
     result.share = front.share_found(record.F)
+    if record.epochs is not None and reference.epochs:
+        result.epochs = moving.measured(record.epochs, reference.epochs)
+        for name in ("ratio", "igd_plus", "share"):
+            setattr(result, name, float(getattr(result.epochs, name).mean()))
     result.turn = float(record.turn.mean()) if len(record.turn) else math.inf
     result.n_points, result.seconds = len(record.F), record.seconds
     reached = result.ratio >= target
@@ -313,31 +272,30 @@ def measure(result: RunResult, record: RunRecord, front: ReferenceFront, target:
     result.n_eval, result.n_gen, result.n_members = record.n_eval, record.n_gen, record.n_members
     result.evaluations_to_target = record.n_eval if reached else math.inf
     if record.history is not None and len(record.history):
-        result.curve = _curve(record.history, record.objectives, front)
-        first = first_reaching(result.curve.ratio, target)
+        result.curve = _curve(record, record.history, reference)
+        # One map's ratio says nothing of the next one's.
+        first = None if reference.epochs else first_reaching(result.curve.ratio, target)
         if first is not None:
             result.evaluations_to_target = float(record.history.evaluations[first])
             result.seconds_to_target = float(record.history.seconds[first])
 
 
-def _curve(history: History, objectives: list[str], front: ReferenceFront) -> Curve:
-    ratio = front.hypervolume_ratios(history.points, history.first, history.last, len(history))
-    shortest: Any = math.nan
-    if "length" in objectives:
-        shortest = front.points[:, objectives.index("length")].min(initial=math.inf)
+def _curve(record: RunRecord, history: History, reference: ProblemReference) -> Curve:
+    of_records = np.zeros(len(history), dtype=int)
+    if record.epochs is not None and reference.epochs:
+        of_records = record.epochs.of_records
+        ratio = moving.ratios(history, of_records, reference.epochs)
+    else:
+        ratio = reference.front.hypervolume_ratios(history.points, history.first, history.last, len(history))
+    fronts = reference.epochs or (reference.front,)
+    shortest = np.full(len(fronts), math.nan)
+    if "length" in record.objectives:
+        column = record.objectives.index("length")
+        shortest = np.array([front.points[:, column].min(initial=math.inf) for front in fronts])
+    shortest = shortest[of_records]
     # Without a length to compare with, there is no legal path (inf) or no such objective (NaN).
-    comparable = math.isfinite(shortest) and shortest > 0
-    length = history.best_length / shortest if comparable else np.full(len(history), shortest or math.nan)
+    comparable = np.isfinite(shortest) & (shortest > 0)
+    length = np.where(shortest == 0, math.nan, shortest)
+    length[comparable] = history.best_length[comparable] / shortest[comparable]
     legal = history.n_legal / np.maximum(history.n_members, 1)
     return Curve(history.evaluations.astype(float), ratio, length, legal)
-
-
-def gist(message: str) -> str:
-    """Return the line of a message that says most: the first, or of a traceback the last, which names the error."""
-    lines = [line.strip() for line in message.splitlines() if line.strip()] or [""]
-    return lines[-1] if lines[0].startswith("Traceback") else lines[0]
-
-
-def kind_of(front: ReferenceFront) -> str:
-    """Return what results are measured against, in a word: "exact", the whole truth, or "merged", the best of all runs."""
-    return "exact" if front.exact else "merged"

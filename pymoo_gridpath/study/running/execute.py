@@ -8,19 +8,23 @@ import os
 import platform
 import time
 import traceback
+import warnings
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pymoo.core.callback import Callback
 
 from pymoo_gridpath.compiled import COMPILED, is_ctrl_c
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
+from pymoo_gridpath.problems import MovingObstaclesProblem, ObstacleClock
 from pymoo_gridpath.problems.members import Members, Snapshot, snapshot
 from pymoo_gridpath.study.planning.build import build_algorithm, build_planner, build_problem, build_termination
+from pymoo_gridpath.study.planning.moving import clock_of
 from pymoo_gridpath.study.planning.plan import Task, needed_for
+from pymoo_gridpath.study.running.epochs import Epochs
 from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
 from pymoo_gridpath.study.specification.kinds import objective_name
 from pymoo_gridpath.versions import versions
@@ -81,25 +85,34 @@ def failed_run(task: Task, message: str, started: str | None = None, seconds: fl
     )
 
 
+class _Search(NamedTuple):
+    """A search that has ended."""
+
+    algorithm: Any
+    result: Any
+    recorder: Recorder
+    clock: ObstacleClock | None
+
+
 def _run(task: Task, started: str) -> RunRecord:
     problem = build_problem(task.problem, task.grid)
     if COMPILED:
         _warm_up(task, problem)
-    algorithm: Any = build_algorithm(task.algorithm, problem)
-    recorder = Recorder(problem.objective_names)
-    termination = None if task.budget is None else build_termination(task.budget, algorithm)
-    result = _search(problem, algorithm, task.seed, termination, recorder)
+    moves = isinstance(problem, MovingObstaclesProblem)
+    # A planner plans anew on each map.
+    searches = [_searched(task, one) for one in (problem.stills if task.budget is None else [problem])]
+    algorithm, _, recorder, clock = searches[-1]
     members = Members(algorithm)
     front = members.front()
     return RunRecord(
         key=task.key,
         seed=task.seed,
         status="finished",
-        message=result.message or "",
-        complete=result.success is not False,
-        seconds=recorder.seconds[-1],
-        n_eval=int(algorithm.evaluator.n_eval),
-        n_gen=algorithm.n_iter - 1,
+        message=_message([search.result for search in searches], moves),
+        complete=all(search.result.success is not False for search in searches),
+        seconds=sum(search.recorder.seconds[-1] for search in searches),
+        n_eval=sum(int(search.algorithm.evaluator.n_eval) for search in searches),
+        n_gen=sum(search.algorithm.n_iter - 1 for search in searches),
         started=started,
         versions=versions(),
         machine=machine(),
@@ -113,7 +126,40 @@ def _run(task: Task, started: str) -> RunRecord:
         n_legal=members.n_legal,
         n_members=members.n_members,
         history=recorder.history(),
+        epochs=_epochs(searches, clock) if moves else None,
     )
+
+
+def _searched(task: Task, problem) -> _Search:
+    """Return a search on a problem once it has ended."""
+    algorithm: Any = build_algorithm(task.algorithm, problem)
+    recorder = Recorder(problem.objective_names)
+    termination = None if task.budget is None else build_termination(task.budget, algorithm)
+    clock: Any = clock_of(problem, recorder)
+    with warnings.catch_warnings():
+        if clock is not recorder:
+            # As KGB makes them between those of the map before.
+            warnings.filterwarnings("ignore", "genes that are no whole numbers")
+        result = _search(problem, algorithm, task.seed, termination, recorder, clock)
+    return _Search(algorithm, result, recorder, None if clock is recorder else clock)
+
+
+def _epochs(searches: list[_Search], clock: ObstacleClock | None) -> Epochs:
+    """Return what was found in each epoch, by a search with a clock or by one on each map."""
+    if clock is not None:
+        return Epochs.of(clock.F, clock.evaluations, clock.missed, clock.faults, searches[-1].recorder.epochs)
+    members = [Members(search.algorithm) for search in searches]
+    evaluations = np.cumsum([search.algorithm.evaluator.n_eval for search in searches]).tolist()
+    last = [len(searches) - 1] * len(searches[-1].recorder.epochs)
+    return Epochs.of([each.F[each.front()] for each in members], evaluations, of_records=last)
+
+
+def _message(results: list[Any], moves: bool) -> str:
+    """Return what searches say of themselves; with the epoch where there is one on each map, and of those that fell short."""
+    if not moves or len(results) == 1:
+        return results[0].message or ""
+    short = [(epoch, result) for epoch, result in enumerate(results) if result.success is False]
+    return "\n".join(f"epoch {epoch}: {result.message}" for epoch, result in short or enumerate(results) if result.message)
 
 
 def _warm_up(task: Task, problem) -> None:
@@ -126,18 +172,21 @@ def _warm_up(task: Task, problem) -> None:
         if task.budget is not None:
             termination, algorithm = build_termination({"generations": 2}), build_algorithm(task.algorithm, problem)
         else:
+            problem = problem.stills[0]
             termination, (algorithm, short) = None, build_planner(task.algorithm, problem, max_labels=100)
             if not short:
                 return
-        _search(problem, algorithm, task.seed, termination, Recorder(problem.objective_names))
+        recorder = Recorder(problem.objective_names)
+        # Without its clock, so that no time passes for the run itself.
+        _search(problem, algorithm, task.seed, termination, recorder, recorder)
     except Exception as error:  # the run itself will say so
         if is_ctrl_c(error):
             raise KeyboardInterrupt from error
 
 
-def _search(problem, algorithm, seed: int, termination, recorder: Recorder):
+def _search(problem, algorithm, seed: int, termination, recorder: Recorder, callback: Callback):
     options = {} if termination is None else {"termination": termination}
-    algorithm.setup(problem, seed=seed, callback=recorder, **options)
+    algorithm.setup(problem, seed=seed, callback=callback, **options)
     most = _most_generations(algorithm)
     while algorithm.has_next() and recorder.generation < most:
         algorithm.next()
@@ -173,6 +222,8 @@ class Recorder(Callback):
     ----------
     seconds : list of float
         Of each record, since the recorder was made.
+    epochs : list of int
+        Of each record, the epoch where obstacles move, or 0.
     generation : int
         Of the last one, from 1 on.
     """
@@ -180,6 +231,7 @@ class Recorder(Callback):
     def __init__(self, objectives):
         super().__init__()
         self.seconds: list[float] = []
+        self.epochs: list[int] = []
         self._snapshots: list[Snapshot] = []
         self._n_obj = len(objectives)
         self.generation = 0
@@ -193,24 +245,30 @@ class Recorder(Callback):
         if (self.generation - 1) % self._step:
             return
         if len(self.seconds) == MAX_RECORDS:
-            for records in (self.seconds, self._snapshots):
+            for records in self._lists:
                 del records[1::2]
             self._step *= 2
             if (self.generation - 1) % self._step:
                 return
         self._record(algorithm)
 
+    @property
+    def _lists(self) -> tuple[list, ...]:
+        """All lists of one entry a record."""
+        return self.seconds, self.epochs, self._snapshots
+
     def finish(self, algorithm: Any) -> None:
         """Make sure that the last generation is on record."""
         if self._recorded == self.generation:
             return
         if len(self.seconds) == MAX_RECORDS:
-            for records in (self.seconds, self._snapshots):
+            for records in self._lists:
                 records.pop()
         self._record(algorithm)
 
     def _record(self, algorithm: Any) -> None:
         self.seconds.append(time.perf_counter() - self._begin)
+        self.epochs.append(getattr(algorithm.problem, "epoch", 0))
         self._snapshots.append(snapshot(algorithm, Members(algorithm)))
         self._recorded = self.generation
 

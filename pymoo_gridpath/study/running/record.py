@@ -15,6 +15,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.study.running.epochs import Epochs
 
 #: Version of the file's layout; a reader refuses files of a later one.
 FORMAT = 1
@@ -117,6 +118,8 @@ class RunRecord:
         Members of the final population that are legal paths, and all.
     history : History or None
         None for failed runs.
+    epochs : Epochs or None
+        None where obstacles do not move, and for failed runs.
     """
 
     key: str
@@ -140,17 +143,19 @@ class RunRecord:
     n_legal: int
     n_members: int
     history: History | None
+    epochs: Epochs | None = None
 
 
-_ARRAYS = ("X", "F", "turn", "history")
+_ARRAYS = ("X", "F", "turn", "history", "epochs")
 
 
 def to_bytes(record: RunRecord) -> bytes:
     """Return a run as the bytes of an ``.npz`` file that `numpy.load` opens.
 
     Its members are ``meta.json`` (everything that is no array), ``X``, ``F``, ``turn``, and of the history ``records``
-    (structured, of shape (T,)), ``points`` and ``span`` (first and last record of each point). The comment of the archive is
-    the SHA-256 of all that stands before it.
+    (structured, of shape (T,)), ``points`` and ``span`` (first and last record of each point); where obstacles move also
+    ``epochs`` (structured, of shape (n_epochs,)), ``epoch_points``, ``epoch_of_points`` and ``epoch_of_records``. The comment
+    of the archive is the SHA-256 of all that stands before it.
     """
     meta = {"format": FORMAT} | {key: value for key, value in vars(record).items() if key not in _ARRAYS}
     # Whole numbers go into the smallest type that holds them; this is what they were.
@@ -158,6 +163,8 @@ def to_bytes(record: RunRecord) -> bytes:
     arrays = {"X": _narrowed(record.X), "F": record.F, "turn": record.turn}
     if record.history is not None:
         arrays |= _packed(record.history)
+    if record.epochs is not None:
+        arrays |= record.epochs.packed()
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as archive:
         # First and not compressed, so that it can be read without unpacking.
@@ -192,7 +199,8 @@ def from_bytes(data: bytes, genes: bool = True) -> RunRecord:
             }
         history = _unpacked(arrays) if "records" in arrays else None
         X = arrays["X"].astype(kind, copy=False) if genes else np.empty((len(arrays["F"]), 0), dtype=kind)
-        return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history)
+        epochs = Epochs.unpacked(arrays)
+        return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history, epochs=epochs)
     except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, TypeError):
         raise DamagedRecordError("the run has a checksum and no arrays, expected what a study writes") from None
 

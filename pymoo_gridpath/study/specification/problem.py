@@ -16,6 +16,7 @@ from pymoo_gridpath.problems import OBSTACLES
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import AXES, check_problem_settings, make_spec, set_fields, set_given
 from pymoo_gridpath.study.specification.kinds import OBJECTIVE
+from pymoo_gridpath.study.specification.moving import MovingObstacles, check_moving
 
 UNKNOWN = ("free", "occupied")
 
@@ -93,6 +94,8 @@ class ProblemSpec:
         Robot radius in metres, by which obstacles are grown.
     resolution, unknown, threshold, corner_cutting : optional
         How the map is read, see `pymoo_gridpath.maps.load_map`.
+    moving : MovingObstacles or mapping, optional
+        Obstacles that move while the search goes on; paths are then coded as "cells", and obstacles are a penalty.
     objectives, representation, obstacles, penalty, potential_limit, axis : optional
         See `GridPathProblem`. An objective or the representation may be of your own: the path of its class,
         ``"package.module:Class"``, a table of ``class`` and its arguments, the class, or an object; a representation is made
@@ -119,6 +122,7 @@ class ProblemSpec:
     unknown: str | None = None
     threshold: float | None = None
     corner_cutting: bool | None = None
+    moving: Any = None
     objectives: Any = ("length", "vulnerability")
     representation: Any = None
     obstacles: str = "penalty"
@@ -140,6 +144,9 @@ class ProblemSpec:
         set_fields(self, axis=values.choice(self.axis, AXES, ("axis",)))
         check_problem_settings(self)
         self._check_obstacles()
+        if self.moving is not None:
+            set_fields(self, moving=make_spec(MovingObstacles, self.moving, ("moving",)))
+            check_moving(self)
 
     def _check_source(self) -> None:
         sources = [key for key in ("random", "map", "grid") if getattr(self, key) is not None]

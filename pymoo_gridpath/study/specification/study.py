@@ -36,7 +36,8 @@ class Study:
     seeds : int, sequence of int or mapping
         How many (from 1 on), a list, or ``{"first": 100, "count": 11}``.
     budget : mapping
-        ``{"evaluations": n}`` or ``{"generations": n}`` of each run.
+        ``{"evaluations": n}`` or ``{"generations": n}`` of each run; None if the obstacles of all problems move, since runs on
+        those end after their epochs.
     name : str, default "study"
     reference : mapping or False, optional
         Budget, ``max_seconds`` (60 by default) and ``max_labels``, of the exact front that results are measured against; False
@@ -66,7 +67,7 @@ class Study:
     problems: Any
     algorithms: Any
     seeds: Any
-    budget: Any
+    budget: Any = None
     name: str = "study"
     reference: Any = field(default_factory=dict)
     target: float = 0.95
@@ -85,6 +86,15 @@ class Study:
             target=values.real(self.target, ("target",), 0.0, 1.0, open_below=True),
             folder=Path(checks.file_path("folder", self.folder, StudyError)),
         )
+        moves = all(problem.moving is not None for problem in self.problems)
+        if self.budget is None and not moves:
+            raise _missing("budget")
+        if self.budget is not None and moves:
+            raise StudyError(
+                "the study has a budget, and the obstacles of all its problems move, so that runs end after their epochs; "
+                "expected none",
+                ("budget",),
+            )
 
     def error(self, message: str, where: Where) -> StudyError:
         """Return an error that says where in the study, or in its file, something is wrong."""
@@ -109,15 +119,18 @@ class Study:
         known = [item.name for item in dataclasses.fields(cls) if item.name not in ("folder", "source")]
         data = values.table(data, ())
         values.check_keys(data, known, (), "the study")
-        for key in ("problems", "algorithms", "seeds", "budget"):
+        for key in ("problems", "algorithms", "seeds"):
             if key not in data:
-                wanted = f"[[{key}]]" if key in ("problems", "algorithms") else key
-                raise StudyError(f"the study has no {wanted}, expected problems, algorithms, seeds and a budget")
+                raise _missing(f"[[{key}]]" if key in ("problems", "algorithms") else key)
         return cls(**data, **others)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the tables of a study file, without what is at its default; the inverse of `from_dict`."""
         return to_table(self)
+
+
+def _missing(key: str) -> StudyError:
+    return StudyError(f"the study has no {key}, expected problems, algorithms, seeds and a budget")
 
 
 def _as_place(where: Where, least: int = 0) -> Where:
@@ -148,7 +161,9 @@ def _specs(cls: Any, items: Any, key: str) -> tuple[Any, ...]:
     return made
 
 
-def _budget(value: Any) -> dict[str, int]:
+def _budget(value: Any) -> dict[str, int] | None:
+    if value is None:
+        return None
     if not isinstance(value, Mapping):
         raise StudyError(
             f"budget is {values.show(value)}, expected such as {{ evaluations = 20000 }} or {{ generations = 100 }}",

@@ -13,7 +13,8 @@ from synthetic_study import Page, digests, rows, texts
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.study.report import write_report
 from pymoo_gridpath.study.report.page.contents import slugs
-from pymoo_gridpath.study.report.results import collect, gist
+from pymoo_gridpath.study.report.references import gist
+from pymoo_gridpath.study.report.results import collect
 from pymoo_gridpath.study.running.record import to_bytes
 
 

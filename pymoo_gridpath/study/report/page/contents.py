@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 from pymoo_gridpath.study.report.figures.fronts import plot_attainment, plot_fronts
+from pymoo_gridpath.study.report.figures.moving import plot_epochs
 from pymoo_gridpath.study.report.figures.plots import plot_convergence, plot_ranks, plot_ratios
 from pymoo_gridpath.study.report.figures.stretched_axis import scale_sentence
 from pymoo_gridpath.study.report.figures.style import AlgorithmStyle, algorithm_styles
@@ -14,7 +15,7 @@ from pymoo_gridpath.study.report.page import definitions, settings, state
 from pymoo_gridpath.study.report.page.blocks import Block, Caution, Drawing, Fold, Heading, Text
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.statistics.comparisons import TESTED, Comparison, compare, compare_each, could_tell
-from pymoo_gridpath.study.report.tables import summary
+from pymoo_gridpath.study.report.tables import moving, summary
 from pymoo_gridpath.study.report.tables.csv_files import Family
 
 # Beyond these numbers, tables and figures of single problems or groups would bury the page.
@@ -98,6 +99,9 @@ class Contents:
         yield Heading(group)
         yield summary.quality_table(results, problems, name, place, comparison)
         yield summary.effort_table(results, problems, name, place, self.times)
+        moves = bool(moving.moving_problems(results, problems))
+        if moves:
+            yield moving.epochs_table(results, problems, name, place)
         if 1 < len(problems) <= _MOST_PROBLEMS:
             against = summary.reference_phrase(results, problems)
             rows = {results.plan.problems[k].label: [k] for k in problems}
@@ -106,23 +110,37 @@ class Contents:
         elif len(problems) > 1:
             yield Text("The numbers of each problem stand in summary.csv.")
         if list(results.groups).index(group) < _MOST_GROUPS:
+            if moves:
+                yield self._epochs_drawing(group, name, problems)
             yield from self._drawings(group, name, problems)
         else:
             yield Text(f"Figures are drawn for the first {_MOST_GROUPS} groups.")
         yield from tests
 
+    def _epochs_drawing(self, group: str, name: str, problems: list[int]) -> Drawing:
+        caption = (
+            f"The epochs on {group}: median (line) and quartiles (band) over the finished runs of algorithms that draw random "
+            "numbers, of what had been found at the end of each epoch. Ratios and IGD+ are to "
+            f"{summary.reference_phrase(self.results, problems)} of its own map. {scale_sentence(self.results, [problems])}"
+        )
+        draw = partial(plot_epochs, self.results, problems, self.styles)
+        return Drawing(f"epochs-{name}", caption, draw, f"No run on {group} has finished.")
+
     def _drawings(self, group: str, name: str, problems: list[int]) -> Iterator[Block]:
         results, label = self.results, self.results.plan.problems[problems[0]].label
         over = "runs" if len(problems) == 1 else f"runs on all {len(problems)} problems"
+        moves = bool(moving.moving_problems(results, problems))
+        moved = " Each record is measured against the front of the map that there was; obstacles moved in between." * moves
         caption = (
             f"Convergence on {group}: median (line) and quartiles (band) over the finished {over}. Ratios are to "
             f"{summary.reference_phrase(results, problems)}; lengths are over the least length on that front; legal members "
-            "are those of the population that are legal paths. What is far off in the first tenth is cut, and there is no "
-            f"line where half of the runs have no legal path to measure. {scale_sentence(results, [problems])}"
+            f"are those of the population that are legal paths.{moved} What is far off in the first tenth is cut, and there is "
+            f"no line where half of the runs have no legal path to measure. {scale_sentence(results, [problems])}"
         )
         draw = partial(plot_convergence, results, problems, self.styles)
         yield Drawing(f"convergence-{name}", caption, draw, f"No run on {group} has a history to draw.")
         first = label if len(problems) == 1 else f"{label}, the first of the {len(problems)} problems of {group}"
+        first += " at the end of the last epoch" * moves
         against = summary.reference_phrase(results, problems[:1])
         caption = (
             f"Empirical attainment surfaces on {first}: the border of what any run, half of the runs and all runs attain; the "

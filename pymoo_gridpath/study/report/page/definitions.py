@@ -8,7 +8,16 @@ from pymoo_gridpath.quality import SAME
 from pymoo_gridpath.study.report.figures.stretched_axis import SCALE_DEFINITION
 from pymoo_gridpath.study.report.page.blocks import Block, Heading, Text
 from pymoo_gridpath.study.report.results import Results
+from pymoo_gridpath.study.report.tables.moving import moving_problems
 from pymoo_gridpath.study.report.tables.table import Table
+
+_MOVING = (
+    "Obstacles that move: every so many generations, an epoch, each mover takes its next cell, and paths are rated on the map "
+    "as it is then. Hypervolume ratio, IGD+ and front found are means over the epochs, of the legal non-dominated paths in the "
+    "population at the end of each, as they are on the map of that epoch, against its exact front. A run is feasible if it has "
+    "a legal path at the end of each epoch. It reaches the target if its mean ratio does, and counts with all that it had "
+    "spent. Mean turn and all fronts that are drawn are of the end of the last epoch. Planners plan anew on each map.",
+)
 
 
 def definition_blocks(results: Results, times: bool) -> list[Block]:
@@ -42,6 +51,7 @@ def definition_blocks(results: Results, times: bool) -> list[Block]:
         "Average ranks, of three algorithms or more on several problems: Friedman's test over the problems' medians, and "
         "Nemenyi's critical difference at 0.05 (Demsar, 2006). The p value of Friedman's test is the chi-square "
         "approximation, which is rough for few problems.",
+        *_MOVING * bool(moving_problems(results, range(len(results.plan.problems)))),
         "The exact front draws no random number, has one run a problem, and is not part of the tests.",
     ]
     if times:

@@ -8,15 +8,19 @@ from typing import Any
 
 import numpy as np
 
+from pymoo_gridpath.errors import counted
 from pymoo_gridpath.study.planning.canonical import resolve
 from pymoo_gridpath.study.planning.plan import PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.page.blocks import Block, Fold, Heading, Listing, Text
-from pymoo_gridpath.study.report.results import Results, kind_of
+from pymoo_gridpath.study.report.references import kind_of
+from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.statistics.summaries import quartiles
+from pymoo_gridpath.study.report.tables.moving import moving_problems
 from pymoo_gridpath.study.report.tables.summary import reference_phrase
 from pymoo_gridpath.study.report.tables.table import NOTHING, Table, count, significant, spread
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.kinds import is_of_paper, operators_of_package
+from pymoo_gridpath.study.specification.moving import n_epochs
 
 # Rows of the list of single problems.
 _MOST_ROWS = 40
@@ -35,6 +39,8 @@ def settings_blocks(results: Results, times: bool) -> Iterator[Block]:
     seeds = sorted({run.seed for run in results.runs if not results.is_deterministic(run.algorithm)})
     yield Heading("Settings")
     words = "".join(f"Budget of each run: {amount} {kind}. " for kind, amount in plan.budget.items())
+    if moving_problems(results, range(len(plan.problems))):
+        words += "Where obstacles move, runs end after the last epoch. "
     words += f"Seeds: {_ranges(seeds)}. Target: hypervolume ratio {results.target:g}."
     if plan.reference is not None:
         words += f" Search for each exact front: {_other(plan.reference)}."
@@ -77,6 +83,8 @@ def _references_table(results: Results, times: bool) -> Table:
             row.append(spread(quartiles(seconds[~np.isnan(seconds)]), significant))
         rows.append(row)
     what = "Fronts that runs are measured against; of several problems, median [quartiles]."
+    if moving_problems(results, range(len(results.plan.problems))):
+        what += " Where obstacles move, the points are those of the last epoch, and the seconds those of all."
     return Table("references", what, header, rows, left=2, for_papers=False)
 
 
@@ -218,6 +226,11 @@ def _obstacles(spec: Mapping[str, Any]) -> str:
     if spec["obstacles"] == "constraint":
         return "constraint"
     penalty = f"penalty of {spec['penalty']:g} a cell"
+    if "moving" in spec:
+        moving = spec["moving"]
+        n_movers, every = len(moving["movers"]), moving["every"]
+        movers, generations = counted(n_movers, "mover"), "generation" if every == 1 else f"{every} generations"
+        penalty += f"; {movers}, a move every {generations}, {counted(n_epochs(moving), 'epoch')}"
     return penalty if spec["obstacles"] == "penalty" else f"vulnerability at most {spec['potential_limit']:g}, {penalty}"
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 
 from pymoo_gridpath.study.report.page.blocks import Block, Heading, Text
-from pymoo_gridpath.study.report.results import Results, gist
+from pymoo_gridpath.study.report.references import gist
+from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.tables.table import Table
 
 # Rows of lists of single runs or problems.

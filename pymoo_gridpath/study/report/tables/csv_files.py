@@ -8,13 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.study.planning.plan import PlannedProblem
-from pymoo_gridpath.study.report.results import Results, gist, kind_of
+from pymoo_gridpath.study.report.references import gist, kind_of
+from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.statistics.comparisons import Comparison, could_tell
 from pymoo_gridpath.study.report.statistics.summaries import quartiles
+from pymoo_gridpath.study.report.tables.moving import epoch_rows, moving_problems
 from pymoo_gridpath.study.report.tables.summary import n_reached
 from pymoo_gridpath.study.report.tables.table import csv_text
 from pymoo_gridpath.study.specification import own
 from pymoo_gridpath.study.specification.kinds import objective_name
+from pymoo_gridpath.study.specification.moving import n_epochs
 
 _MEASURES = ("ratio", "igd_plus", "share", "turn", "evaluations_to_target", "seconds_to_target", "n_eval", "seconds")
 _TIMES = ("seconds_to_target", "seconds")
@@ -46,7 +49,9 @@ def csv_files(results: Results, families: Sequence[Family], times: bool) -> dict
         Whether seconds are among the columns.
     """
     measures = [measure for measure in _MEASURES if times or measure not in _TIMES]
+    moves = bool(moving_problems(results, range(len(results.plan.problems))))
     return {
+        **({"epochs.csv": csv_text(*epoch_rows(results))} if moves else {}),
         "runs.csv": csv_text(*_runs(results, measures)),
         "problems.csv": csv_text(*_problems(results, times)),
         "summary.csv": csv_text(*_summary(results, measures)),
@@ -78,6 +83,8 @@ def _problems(results: Results, times: bool) -> tuple[list[str], Iterator[list]]
     given = ["representation", "axis", "obstacles", "penalty", "potential_limit"]
     header = ["group", "problem", *grid, "start", "goal", "objectives", *given]
     header += ["reference", "reference_points", "reason", "exceeded"]
+    moves = bool(moving_problems(results, range(len(results.plan.problems))))
+    header += ["movers", "every", "epochs"] * moves
 
     def rows() -> Iterator[list]:
         for problem, reference in zip(results.plan.problems, results.references, strict=True):
@@ -88,6 +95,9 @@ def _problems(results: Results, times: bool) -> tuple[list[str], Iterator[list]]
             row.append(" ".join(map(objective_name, spec["objectives"])))
             row += [own.shown(spec[key]) if key == "representation" else spec[key] for key in given]
             row += [kind, len(reference.front), reference.reason, _truth(reference.exceeded)]
+            if moves:
+                moving = spec.get("moving")
+                row += [None] * 3 if moving is None else [len(moving["movers"]), moving["every"], n_epochs(moving)]
             yield [*row, reference.seconds] if times else row
 
     return [*header, "exact_seconds"] if times else header, rows()

@@ -49,6 +49,9 @@ def quality_table(results: Results, problems: Sequence[int], name: str, place: s
             cells.append(spread(quartiles(results.values(measure, k, problems)), show))
         rows.append([*cells, _better_than(comparison, k)])
     what = f"Final fronts {place}, measured against {reference_phrase(results, problems)}."
+    if results.references[problems[0]].epochs:
+        what = f"Fronts at the end of each epoch {place}, means over the epochs, each measured against "
+        what += f"{reference_phrase(results, problems)} of its own map; the turn is that of the last."
     notes = [f"Median [quartiles] over all finished runs. {_explain_better(comparison)}", *_incomplete(results, problems)]
     return Table(f"{name}-quality", what, header, rows, left=2, notes=notes)
 
