@@ -10,12 +10,14 @@ from pymoo_gridpath.problems.scenarios import (
     maze_environment,
     random_dense_grid,
 )
+from pymoo_gridpath.problems.shortening import ShorteningProblem
 
 __all__ = [
     "OBSTACLES",
     "GridPathProblem",
     "MovingObstaclesProblem",
     "ObstacleClock",
+    "ShorteningProblem",
     "concave_environment",
     "convex_environment",
     "far_corners",

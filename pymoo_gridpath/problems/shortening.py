@@ -73,13 +73,13 @@ class ShorteningProblem(Problem):
     >>> from pymoo.optimize import minimize
     >>> occupied = np.zeros((8, 9))
     >>> occupied[:4, 4] = 1
-    >>> road = [(x, 1) for x in range(2)] + [(1, y) for y in range(2, 7)] + [(x, 6) for x in range(2, 8)] + [(7, 5), (7, 4)]
+    >>> road = [(1, y) for y in range(1, 7)] + [(x, 6) for x in range(2, 8)] + [(7, y) for y in range(5, 1, -1)]
     >>> problem = ShorteningProblem(OccupancyGrid(occupied), road, n_points=2)
     >>> result = minimize(problem, PSO(pop_size=20), ("n_gen", 20), seed=1)
     >>> result.F.round(3).tolist(), problem.pareto_front().round(3).tolist()
-    ([11.123], [[11.123]])
+    ([10.831], [[10.831]])
     >>> problem.waypoints(result.X).cells.tolist()
-    [[0, 1], [1, 5], [4, 6], [7, 4]]
+    [[1, 1], [4, 6], [7, 2]]
     """
 
     def __init__(self, grid: OccupancyGrid, road: ArrayLike, radius: float = 0.0, n_points: int = 10):
@@ -90,9 +90,9 @@ class ShorteningProblem(Problem):
         usable = ~grid.grow(radius).occupied.ravel()
         usable[self.road] = True
         self.moves = every.within(usable)
-        cells = self.moves.cells(self.road)
-        self.travelled = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(cells, axis=0).T))])
-        n_points = checks.whole("n_points", n_points, 1, max(len(cells) - 2, 1))
+        self._cells = self.moves.cells(self.road)
+        self.travelled = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self._cells, axis=0).T))])
+        n_points = checks.whole("n_points", n_points, 1, max(len(self.road) - 2, 1))
         super().__init__(n_var=n_points, n_obj=1, xl=0.0, xu=1.0)
 
     # -- from genes to paths --------------------------------------------------------------------------------------------------
@@ -171,8 +171,7 @@ class ShorteningProblem(Problem):
 
     def _lengths(self, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
         """Return the length of the piece from each of some places to another one, further on."""
-        cells = self.moves.cells(self.road)
-        straight = np.hypot(*np.moveaxis(cells[end] - cells[begin], -1, 0))
+        straight = np.hypot(*np.moveaxis(self._cells[end] - self._cells[begin], -1, 0))
         return np.where(self._seen(begin, end), straight, self.travelled[end] - self.travelled[begin])
 
     def _seen(self, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
@@ -195,7 +194,7 @@ class ShorteningProblem(Problem):
         return self.evaluate(self.pareto_set())
 
     def _calc_pareto_set(self, *args, **kwargs):
-        n, cells = len(self.road), self.moves.cells(self.road)
+        n, cells = len(self.road), self._cells
         # Of k + 1 pieces from the start to each place: the least length, and the place before.
         least, before = np.full((self.n_var + 1, n), np.inf), np.zeros((self.n_var + 1, n), dtype=np.int64)
         for place in range(1, n):
