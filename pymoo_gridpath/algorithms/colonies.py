@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import logging
 from typing import Any
 
@@ -35,8 +36,11 @@ class _Colony(Algorithm):
         The least that it can be.
     """
 
+    # pymoo fills them when the run begins.
+    problem: Any
     pop: Any
     off: Any
+    random_state: Any
 
     def __init__(self, pop_size: int, least: int, **kwargs):
         refuse_unknown(type(self).__name__, kwargs, parameters_of(type(self)))
@@ -54,11 +58,11 @@ class AntColony(_Colony):
     Cells of the road are the nodes, and an edge leads from each to all further on that it sees. An ant walks from the start
     along edges, each drawn with a probability in proportion to its pheromone, times a power of what it promises: one cell and
     what the line saves of the road. After as many edges as the problem has genes it follows the road, or the line if it sees
-    the goal. Pheromone evaporates, and the best ant so far renews it along its edges; none falls below a thousandth of the most,
-    so that no edge is ever out of the question.
+    the goal; nowhere else does it follow the road out of sight. Pheromone evaporates, and the best ant so far renews it along
+    its edges; none falls below a thousandth of the most, so that no edge is ever out of the question.
 
-    All ants of an iteration walk at once. The pairs of cells that see one another are found beforehand, by as many tests as there
-    are pairs, which are no evaluations: with them, dynamic programming would have the optimum at once, see `ShorteningProblem`.
+    All ants of an iteration walk at once. The pairs of cells that see one another are found beforehand, by as many tests as
+    there are pairs, which are no evaluations: with them, dynamic programming has the optimum at once, see `ShorteningProblem`.
 
     Parameters
     ----------
@@ -110,10 +114,10 @@ class AntColony(_Colony):
             raise CapabilityError(f"AntColony walks on the road of a ShorteningProblem, the problem is {shown(problem)}")
         cells, along = problem.moves.cells(problem.road), problem.travelled
         straight = np.hypot(*np.moveaxis(cells[None] - cells[:, None], -1, 0))
-        saved = np.maximum(along[None] - along[:, None] - straight, 0.0)
-        # A share of the most, lest a large power of it be beyond all numbers.
-        promise = (1.0 + saved) / (1.0 + saved[problem.sight].max(initial=0.0))
-        self._promise = np.where(problem.sight, np.maximum(promise**self.beta, np.finfo(float).tiny), 0.0)
+        promise = np.where(problem.sight, 1.0 + np.maximum(along[None] - along[:, None] - straight, 0.0), 0.0)
+        # As shares of the most, lest large powers be beyond all numbers.
+        powers = np.maximum((promise / promise.max()) ** self.beta, np.finfo(float).tiny)
+        self._promise = np.where(problem.sight, powers, 0.0)
         # Who has arrived stays.
         self._promise[-1, -1] = 1.0
         self._pheromone = np.ones_like(self._promise)
@@ -122,7 +126,7 @@ class AntColony(_Colony):
         return self._infill()
 
     def _infill(self):
-        problem: Any = self.problem
+        problem = self.problem
         places = np.zeros((self.pop_size, problem.n_var + 2), dtype=np.int64)
         places[:, -1] = len(problem.road) - 1
         for k in range(problem.n_var):
@@ -133,16 +137,16 @@ class AntColony(_Colony):
             places[:, k + 1] = np.minimum((weight <= drawn).sum(axis=1), places[:, -1])
         return Population.new("X", problem.encode(places))
 
-    def _initialize_advance(self, infills=None, **kwargs):
+    def _initialize_advance(self, infills: Any = None, **kwargs):
         self._best = infills[np.argmin(infills.get("F")[:, 0])]
         self._advance(infills)
 
-    def _advance(self, infills=None, **kwargs):
+    def _advance(self, infills: Any = None, **kwargs):
         self.pop = infills
         best: Individual = infills[np.argmin(infills.get("F")[:, 0])]
         if best.F[0] < self._best.F[0]:
             self._best = best
-        problem: Any = self.problem
+        problem = self.problem
         (places,) = problem.decode(self._best.X[None])
         self._pheromone *= 1.0 - self.evaporation
         self._pheromone[places[:-1], places[1:]] += self.evaporation
@@ -150,7 +154,7 @@ class AntColony(_Colony):
 
 
 class BeeColony(_Colony):
-    """The artificial bee colony of NiaPy, as a pymoo algorithm for one objective of real variables, such as `ShorteningProblem`.
+    """The artificial bee colony of NiaPy, as a pymoo algorithm for one objective of real variables: a `ShorteningProblem`, say.
 
     An iteration is one of NiaPy's: half of the bees each change a source of food in one variable, the other half choose among
     the sources by 1 / (F + 0.01) and do the same, and a source that was tried in vain too often is left for a random one. Every
@@ -175,13 +179,13 @@ class BeeColony(_Colony):
         If an argument is unknown; when the run begins, if NiaPy cannot be imported, or the problem has constraints, several
         objectives, no bounds, or variables that are no real numbers.
     GridPathError
-        If an argument is of another kind or out of its range; when an objective is negative or not finite, since onlookers could
-        not choose.
+        If an argument is of another kind or out of its range; when an objective is negative or not finite, since onlookers
+        could not choose.
 
     References
     ----------
     D. Karaboga and B. Basturk, "A powerful and efficient algorithm for numerical function optimization: artificial bee colony
-    (ABC) algorithm", *Journal of Global Optimization* 39(3):459-471, 2007. NiaPy: G. Vrbančič et al., "NiaPy: Python microframework
+    (ABC) algorithm", *Journal of Global Optimization* 39(3):459-471, 2007. G. Vrbančič et al., "NiaPy: Python microframework
     for building nature-inspired algorithms", *Journal of Open Source Software* 3(23):613, 2018.
     """
 
@@ -193,7 +197,8 @@ class BeeColony(_Colony):
         real = problem.vtype in (None, float)
         if problem.n_obj != 1 or problem.has_constraints() or not problem.has_bounds() or not real:
             raise CapabilityError(
-                f"BeeColony is for one objective of real variables with bounds and no constraints, the problem is {shown(problem)}"
+                f"BeeColony is for one objective of real variables with bounds and no constraints, the problem is "
+                f"{shown(problem)}"
             )
         colony = _niapy().algorithms.basic.ArtificialBeeColonyAlgorithm
         # A generator is taken as it is: all draws are from pymoo's.
@@ -213,10 +218,10 @@ class BeeColony(_Colony):
         self._state = self._bees.run_iteration(task, *state, **more)
         return Population.create(*tried)
 
-    def _initialize_advance(self, infills=None, **kwargs):
+    def _initialize_advance(self, infills: Any = None, **kwargs):
         self._advance(infills)
 
-    def _advance(self, infills=None, **kwargs):
+    def _advance(self, infills: Any = None, **kwargs):
         known = self._known | {one.X.tobytes(): one for one in infills}
         held = [source.x.tobytes() for source in self._state[0][: self._bees.food_number]]
         self._known = {key: known[key] for key in held}
@@ -229,13 +234,13 @@ def _task(algorithm: BeeColony) -> tuple[Any, list[Individual]]:
     It is made anew for each iteration and not kept, since pickle cannot name a class that is derived here.
     """
     niapy = _niapy()
-    problem: Any = algorithm.problem
+    problem = algorithm.problem
     tried: list[Individual] = []
 
     class Rated(niapy.problems.Problem):
         def _evaluate(self, x):
             one = Individual(X=x.copy())
-            algorithm.evaluator.eval(problem, one, algorithm=algorithm)
+            algorithm.evaluator.eval(problem, Population.create(one), algorithm=algorithm)
             tried.append(one)
             value = float(one.F[0])
             if not 0 <= value < np.inf:
@@ -250,9 +255,8 @@ def _niapy() -> Any:
     root, before = logging.getLogger(), logging.getLogger().handlers[:]
     try:
         # The rest of the package does without it.
-        import niapy.algorithms.basic
-        import niapy.problems
-        import niapy.task
+        importlib.import_module("niapy.algorithms.basic")
+        return importlib.import_module("niapy")
     except ImportError as error:
         raise CapabilityError(
             f"BeeColony needs the package NiaPy, which cannot be imported ({error}); pip install 'pymoo_gridpath[swarm]'"
@@ -262,4 +266,3 @@ def _niapy() -> Any:
         for handler in root.handlers[:]:
             if handler not in before:
                 root.removeHandler(handler)
-    return niapy

@@ -89,7 +89,7 @@ def test_every_row_is_a_legal_path_no_longer_than_its_road(seed, n_points, radiu
     X[0], X[1], X[2] = 0, 1, X[2, 0]
     F = problem.evaluate(X)[:, 0]
     slow = Slow(grid, road, radius)
-    assert (F <= length(road) + 1e-9).all() and (F >= problem.pareto_front()[0, 0] - 1e-9).all()
+    assert (length(road) + 1e-9 >= F).all() and (problem.pareto_front()[0, 0] - 1e-9 <= F).all()
     for x, value in zip(X, F, strict=True):
         cells, waypoints = [tuple(cell) for cell in problem.cells(x).tolist()], problem.waypoints(x)
         assert is_legal(cells, grid, road[0], road[-1]) and broken_cells(cells, slow.grown) == 0
@@ -197,7 +197,9 @@ def test_wrong_genes_and_places_are_refused():
         with pytest.raises(GridPathError, match=said):
             problem.decode(X)
     for places in ([[0, 3, 1, 4]], [[1, 1, 1, 4]], [[0, 1, 1, 3]]):
-        with pytest.raises(GridPathError, match="places hold other numbers, expected rows of 4 whole numbers from 0 to 4, rising"):
+        with pytest.raises(
+            GridPathError, match="places hold other numbers, expected rows of 4 whole numbers from 0 to 4, rising"
+        ):
             problem.encode(np.array(places))
     with pytest.raises(GridPathError, match="x is an array of float64"):
         problem.waypoints(np.zeros((1, 2)))
