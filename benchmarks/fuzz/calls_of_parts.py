@@ -89,6 +89,8 @@ def _maps(w: World) -> dict[str, Call]:
 def _problems(w: World) -> dict[str, Call]:
     problem, limited = w.problem, w.limited
     paths = problem.decode(w.legal_rows)
+    road = [(x, 0) for x in range(8)] + [(7, y) for y in range(1, 6)]
+    shortening = problems.ShorteningProblem(w.grid, road, n_points=2)
     moving = problems.MovingObstaclesProblem(w.grid, [[(-1, 0), (-2, 0)]], **w.query)
     own = {"grid": w.grid, **w.query, "representation": "integer", "objectives": ("length", "vulnerability"), "axis": "x"}
     return {
@@ -121,6 +123,11 @@ def _problems(w: World) -> dict[str, Call]:
         "MovingObstaclesProblem.restart": (moving.restart, {}),
         "MovingObstaclesProblem.score": (moving.score, {"paths": moving.decode(w.rows(moving))}),
         "ObstacleClock": (problems.ObstacleClock, {"told": True, "renew": True, "callback": Callback()}),
+        "ShorteningProblem": (problems.ShorteningProblem, {"grid": w.grid, "road": road, "radius": 1.0, "n_points": 3}),
+        "ShorteningProblem.cells": (shortening.cells, {"x": np.array([0.4, 0.6])}),
+        "ShorteningProblem.decode": (shortening.decode, {"X": np.array([[0.4, 0.6], [0.1, 0.9]])}),
+        "ShorteningProblem.encode": (shortening.encode, {"places": np.array([[0, 3, 5, 12], [0, 0, 7, 12]])}),
+        "ShorteningProblem.waypoints": (shortening.waypoints, {"x": np.array([0.4, 0.6])}),
         "random_movers": (
             problems.random_movers,
             {"grid": w.grid, **w.query, "n_movers": 1, "n_epochs": 3, "random_state": 1},

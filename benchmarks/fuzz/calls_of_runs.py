@@ -96,6 +96,8 @@ def _algorithms(w: World) -> dict[str, Call]:
                 "n_offsprings": 12,
             },
         ),
+        "AntColony": (algorithms.AntColony, {"pop_size": 10, "evaporation": 0.2, "beta": 1.0}),
+        "BeeColony": (algorithms.BeeColony, {"pop_size": 10, "limit": 20}),
         "PathOutput": (algorithms.PathOutput, {"distance": False}),
         "ExactFront": (
             algorithms.ExactFront,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pymoo_gridpath.algorithms.capabilities import CAPABILITIES, Capability, capability_table
+from pymoo_gridpath.algorithms.colonies import AntColony, BeeColony
 from pymoo_gridpath.algorithms.factory import make_algorithm, reference_directions
 from pymoo_gridpath.algorithms.known import find_algorithm
 from pymoo_gridpath.algorithms.moead import SmoothMOEAD
@@ -34,6 +35,8 @@ __all__ = [
     "CAPABILITIES",
     "PRINTED_RULES",
     "AStar",
+    "AntColony",
+    "BeeColony",
     "BestFirst",
     "BreadthFirst",
     "Capability",

@@ -11,6 +11,7 @@ from pymoo_gridpath.problems.scenarios import (
     maze_environment,
     random_dense_grid,
 )
+from pymoo_gridpath.problems.shortening import ShorteningProblem
 from pymoo_gridpath.problems.timed import TimedPathProblem
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "GridPathProblem",
     "MovingObstaclesProblem",
     "ObstacleClock",
+    "ShorteningProblem",
     "TimedPathProblem",
     "concave_environment",
     "convex_environment",
