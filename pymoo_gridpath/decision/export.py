@@ -40,6 +40,18 @@ def csv_text(trade_off) -> str:
     return text.getvalue()
 
 
+def data_frame(trade_off):
+    """Return what `csv_text` writes as a pandas.DataFrame; see `TradeOffSet.to_pandas`."""
+    try:
+        import pandas
+    except ImportError:
+        raise GridPathError(
+            "pandas is not installed, expected it for to_pandas; pip install 'pymoo_gridpath[pandas]'"
+        ) from None
+    names = [";".join(trade_off.names(k)) for k in range(len(trade_off))]
+    return pandas.DataFrame({"path": range(len(trade_off)), "names": names, **trade_off.measures})
+
+
 def json_text(trade_off) -> str:
     """Return a trade-off set as strict JSON, one path a line."""
     head = {

@@ -15,12 +15,14 @@ from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.known import find_algorithm
-from pymoo_gridpath.decision import export, provenance
+from pymoo_gridpath.decision import drawn, export, provenance
 from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.pictures import png
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.versions import versions
 
@@ -61,6 +63,8 @@ class PathRecord:
         The plain objectives of the problem.
     genes : numpy.ndarray, shape (n_var,)
         The row of decision variables that codes it.
+    grid : OccupancyGrid, optional
+        The map that it leads across.
     """
 
     index: int
@@ -75,10 +79,17 @@ class PathRecord:
     clearance: float
     objectives: dict[str, float]
     genes: np.ndarray = field(repr=False)
+    grid: OccupancyGrid | None = field(default=None, repr=False)
 
     def as_dict(self) -> dict:
-        """Return the record as a dict of its attributes, arrays as arrays."""
-        return dict(vars(self))
+        """Return the record as a dict of its attributes but for the map, arrays as arrays."""
+        return {name: value for name, value in vars(self).items() if name != "grid"}
+
+    def _repr_html_(self) -> str:
+        return drawn.record_html(self)
+
+    def _repr_png_(self) -> bytes:
+        return png(drawn.record_scene(self))
 
 
 class TradeOffSet:
@@ -288,6 +299,7 @@ class TradeOffSet:
             clearance=value["clearance"],
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
+            grid=self.problem.grid,
         )
 
     # -- words and files ----------------------------------------------------------------------------------------------
@@ -357,6 +369,27 @@ class TradeOffSet:
     def __repr__(self) -> str:
         legal = "" if self.feasible else ", NOT feasible"
         return f"<TradeOffSet: {len(self)} paths in {', '.join(self.objective_names)}{legal}>"
+
+    def _repr_html_(self) -> str:
+        return drawn.html_of(self)
+
+    def _repr_png_(self) -> bytes:
+        return png(drawn.scene_of(self))
+
+    def to_pandas(self):
+        """Return one row a path with its number, its names and every measure, as `to_csv` writes them.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With the columns ``path``, ``names`` (joined by ``;``, empty for most) and those of `measures`.
+
+        Raises
+        ------
+        GridPathError
+            If pandas is not installed; it is the extra ``pandas``.
+        """
+        return export.data_frame(self)
 
     def to_csv(self, path: str | os.PathLike[str]) -> Path:
         """Write one row a path with its number, its names (joined by ``;``) and every measure in full precision.

@@ -15,6 +15,9 @@ from numpy.typing import ArrayLike
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
+from pymoo_gridpath.pictures import OTHERS as OTHERS
+from pymoo_gridpath.pictures import PALETTE
 
 
 @dataclass(frozen=True)
@@ -26,16 +29,14 @@ class NameStyle:
     marker: str
 
 
-# Colours of Okabe and Ito's palette; dashes and markers tell the paths apart in grey print too.
+# Dashes and markers tell the paths apart in grey print too.
 NAME_STYLES = {
-    "shortest": NameStyle("#0072B2", "-", "s"),
-    "safest": NameStyle("#009E73", (0, (5, 1.6)), "D"),
-    "smoothest": NameStyle("#D55E00", (0, (1.2, 1.2)), "^"),
-    "knee": NameStyle("#CC3377", (0, (6, 1.5, 1.2, 1.5)), "o"),
+    "shortest": NameStyle(PALETTE[0], "-", "s"),
+    "safest": NameStyle(PALETTE[1], (0, (5, 1.6)), "D"),
+    "smoothest": NameStyle(PALETTE[2], (0, (1.2, 1.2)), "^"),
+    "knee": NameStyle(PALETTE[3], (0, (6, 1.5, 1.2, 1.5)), "o"),
 }
-OCCUPIED = "#3b3f45"
 POTENTIAL = ["#ffffff", "#f3d9a4"]  # a list: of a tuple of two, matplotlib 3.8.0 takes the second for an opacity
-OTHERS = "#8a8f98"
 REFERENCE = "#5b5f66"
 WARNING = "#b00020"
 
