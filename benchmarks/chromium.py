@@ -14,6 +14,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -24,6 +25,15 @@ _FLAGS = (
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
     *("--disable-component-update", "--disable-sync", "--hide-scrollbars", "--remote-debugging-pipe"),
 )
+
+# The browser reads from descriptor 3 and writes to 4, wherever they are here.
+_WIRING = """
+import fcntl, os, sys
+reads, writes = (fcntl.fcntl(int(number), fcntl.F_DUPFD, 10) for number in sys.argv[1:3])
+os.dup2(reads, 3)
+os.dup2(writes, 4)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
 
 
 def find_chromium() -> str | None:
@@ -42,15 +52,16 @@ class Chromium:
         self.folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(ignore_cleanup_errors=True)))
         reads, self._out = os.pipe()
         self._in, writes = os.pipe()
-        # The browser reads from descriptor 3 and writes to 4, wherever they are here.
-        wiring = f'exec "$0" "$@" 3<&{reads} 4>&{writes}'
-        command = ["sh", "-c", wiring, path, *_FLAGS, f"--user-data-dir={self.folder / 'profile'}", "about:blank"]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        self._process = subprocess.Popen(command, pass_fds=(reads, writes), **quiet)
+        command = [path, *_FLAGS, f"--user-data-dir={self.folder / 'profile'}", "about:blank"]
+        command = [sys.executable, "-c", _WIRING, str(reads), str(writes), *command]
+        nowhere = subprocess.DEVNULL
+        self._process = subprocess.Popen(command, pass_fds=(reads, writes), stdout=nowhere, stderr=nowhere)
         os.close(reads)
         os.close(writes)
         self._left, self._number = b"", 0
         self.events: list[dict] = []
+        (self.folder / "files").mkdir()
+        self.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(self.folder / "files"))
         return self
 
     def __exit__(self, *error) -> None:
@@ -180,6 +191,15 @@ class Page:
 
     def _events(self, method: str) -> list[dict]:
         return [one for one in self.browser.events if one.get("method") == method and one.get("sessionId") == self.session]
+
+    def downloaded(self, name: str, timeout: float = 10) -> bytes:
+        """Return a file that the tab has saved under a name, once it is there."""
+        file, end = self.browser.folder / "files" / name, time.monotonic() + timeout
+        while not file.exists():
+            if time.monotonic() > end:
+                raise TimeoutError(f"there is no {name} among {sorted(path.name for path in file.parent.iterdir())}")
+            time.sleep(0.02)
+        return file.read_bytes()
 
     def close(self) -> None:
         """Close the tab."""

@@ -92,7 +92,7 @@ def large_problem(random) -> GridPathProblem:
     rough = ndimage.gaussian_filter(random.standard_normal((SIDE, SIDE)), 3.0)
     occupied = rough > np.quantile(rough, 0.8)
     occupied[:8, :8] = occupied[-8:, -8:] = False
-    labels, _ = ndimage.label(~occupied)
+    labels = np.asarray(ndimage.label(~occupied)[0])  # pyright: ignore
     occupied[labels != labels[0, 0]] = True
     grid = OccupancyGrid(occupied, resolution=0.05, name="large")
     ys, xs = np.nonzero(~occupied)

@@ -1,7 +1,7 @@
 """Small pictures of grids and paths, made of nothing but arrays: for notebooks and terminals.
 
-Everything here takes arrays ``[y, x]`` with y up and cells (x, y), and knows no class of the package, so that each of them can show
-itself.
+Everything here takes arrays ``[y, x]`` with y up and cells (x, y), and knows no class of the package, so that each of them can
+show itself.
 """
 
 from __future__ import annotations
@@ -100,6 +100,8 @@ def png(scene: Scene) -> bytes:
             ((x, y),), r = place(cell), max(3, 0.35 * size)
             shape = draw.rectangle if square else draw.ellipse
             shape((x - r, y - r, x + r, y + r), fill=0, outline=4, width=max(1, int(r / 3)))
+    # The edge of the map, where its cells have the colour of the page.
+    draw.rectangle((0, 0, picture.width - 1, picture.height - 1), outline=1)
     file = io.BytesIO()
     picture.save(file, "PNG", optimize=True)
     return file.getvalue()
@@ -123,11 +125,12 @@ def page(picture: bytes, title: str, rows: Mapping[str, object] | Sequence[Seque
     else:
         head = f"<tr>{''.join(f'<th>{_escape(cell)}</th>' for cell in rows[0])}</tr>"
         body = list(rows[1:])
-    lines = "".join(
-        f"<tr><th>{_escape(first)}</th>{''.join(f'<td>{_escape(cell)}</td>' for cell in rest)}</tr>" for first, *rest in body
-    )
+    lines = ""
+    for first, *rest in body:
+        lines += f"<tr><th>{_escape(first)}</th>{''.join(f'<td>{_escape(cell)}</td>' for cell in rest)}</tr>"
     image = f'<img alt="{_escape(alt)}" src="data:image/png;base64,{base64.b64encode(picture).decode()}">'
-    return f"<div><strong>{_escape(title)}</strong><table><tr><td>{image}</td><td><table>{head}{lines}</table></td></tr></table></div>"
+    table = f"<table>{head}{lines}</table>"
+    return f"<div><strong>{_escape(title)}</strong><table><tr><td>{image}</td><td>{table}</td></tr></table></div>"
 
 
 def _escape(text: object) -> str:
@@ -212,10 +215,8 @@ def half_blocks(scene: Scene, columns: int, lines: int, colors: bool = True) -> 
     return "\n".join(re.sub(r"(\x1b\[[\d;]*m)(\S)((?:\1\2)+)", _said_once, line) + "\x1b[0m" for line in text)
 
 
-def legend(scene: Scene, colors: bool = True) -> str:
-    """Return what the paths of a scene on a terminal are called, on one line."""
-    if not colors:
-        return ""
+def legend(scene: Scene) -> str:
+    """Return what the paths of a scene on a terminal of colours are called, on one line."""
     return "  ".join(f"\x1b[38;5;{nearest_color(line.color)}m{_MARKS['both'] * 2}\x1b[0m {line.name}" for line in scene.lines)
 
 

@@ -208,6 +208,16 @@ class TradeOffSet:
         _check_settings(settings)
         return cls(problem, X, _meta(problem, settings, []))
 
+    @classmethod
+    def _known(cls, problem, X: np.ndarray, F: np.ndarray, measures: dict[str, np.ndarray], feasible: bool, meta: dict):
+        """Return a set of which everything is known: paths of a set that was chosen and measured before."""
+        made = cls.__new__(cls)
+        made.problem, made.X, made.F, made.measures, made.feasible, made.meta = problem, X, F, measures, feasible, meta
+        made.paths = problem.decode(X)
+        made._algorithms = []
+        made._cells = [np.asarray(made.paths.cells(k)) for k in range(len(X))]
+        return made
+
     def _measure(self, measures: PathMeasures) -> dict[str, np.ndarray]:
         grid, box = self.problem.grid, self.problem.representation.box
         field = BoxedField(clearance(grid.crop(box)), box, grid.width, functools.partial(clearance, grid))

@@ -36,9 +36,9 @@ def page_data(trade_off) -> dict[str, Any]:
     -------
     dict
         ``map`` (name, size in cells, corner: the cell of the whole map that is (0, 0) here, resolution or None, unit, origin),
-        ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, values with None for infinity), ``names`` (name and
-        path), ``occupied`` (a bit a cell, row by row from the bottom), ``field`` (0 to 255, or None), ``counts`` (cells of each
-        path), ``starts`` and ``steps`` (see `packed_paths`), and texts.
+        ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, values with None for infinity), ``names`` (name
+        and path), ``occupied`` (a bit a cell, row by row from the bottom), ``field`` (0 to 255, or None), ``counts``,
+        ``starts`` and ``steps`` (see `packed_paths`), and texts.
     """
     problem = trade_off.problem
     box = drawn_box(trade_off)

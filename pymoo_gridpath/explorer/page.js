@@ -109,7 +109,7 @@ function hover(path) {
 }
 
 function chooseLinked() {
-  const text = decodeURIComponent(location.hash.slice(1));
+  const text = location.hash.slice(1); // names are letters, so that nothing has to be decoded
   const named = names.find((one) => one.name === text);
   const path = named ? named.path : Number(text || NaN);
   if (Number.isInteger(path) && path >= 0 && path < nPaths) choose(path);

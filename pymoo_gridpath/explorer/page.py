@@ -59,10 +59,10 @@ def save_page(trade_off, file: str | os.PathLike[str], title: str | None = None)
 def page_text(trade_off, title: str | None = None) -> str:
     """Return the page of a trade-off set; see `save_page`."""
     data = page_data(check_set(trade_off))
-    title = data["map"]["name"] if title is None else visible(checks.text("title", title))
+    shown = str(data["map"]["name"]) if title is None else visible(checks.text("title", title))
     # Nothing of the data can end the element that they stand in, or begin another.
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-    parts = {**_fixed(), "title": html.escape(title), "data": text}
+    parts = {**_fixed(), "title": html.escape(shown), "data": text}
     return re.sub("@([a-z_]+)@", lambda match: parts[match[1]], _asset("page.html"))
 
 
@@ -74,7 +74,7 @@ def _fixed() -> dict[str, str]:
 
 
 def _asset(name: str) -> str:
-    return (files(__package__) / name).read_text(encoding="utf-8")
+    return (files("pymoo_gridpath.explorer") / name).read_text(encoding="utf-8")
 
 
 def _hash(text: str) -> str:
