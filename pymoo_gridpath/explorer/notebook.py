@@ -12,13 +12,21 @@ _OTHERWISE = "A picture of the paths, where the page above is not shown: trust t
 
 
 class Explorer:
-    """The page of a trade-off set as a notebook shows it, in a frame of its own; `explore` makes one."""
+    """The page of a trade-off set as a notebook shows it, in a frame of its own; `explore` makes one.
 
-    def __init__(self, trade_off, page: str, height: int):
-        self.trade_off, self.page, self.height = trade_off, page, height
+    Parameters
+    ----------
+    trade_off, title, height
+        As in `explore`.
+    """
+
+    def __init__(self, trade_off, title: str | None = None, height: int = 720):
+        self.height = checks.whole("height", height, 200, 4000)
+        self.page = page_text(trade_off, title)
+        self.trade_off = trade_off
 
     def __repr__(self) -> str:
-        return f"<Explorer of {self.trade_off!r}; shown by notebooks, written by save_page>"
+        return f"<Explorer of {self.trade_off!r}; notebooks show it, save_page writes it>"
 
     def _repr_html_(self) -> str:
         frame = (
@@ -53,5 +61,4 @@ def explore(trade_off, title: str | None = None, height: int = 720) -> Explorer:
     GridPathError
         If an argument is of another kind or out of its range.
     """
-    height = checks.whole("height", height, 200, 4000)
-    return Explorer(trade_off, page_text(trade_off, title), height)
+    return Explorer(trade_off, title, height)

@@ -116,7 +116,7 @@ def test_of_a_large_map_the_part_that_can_be_reached_is_shown(tmp_path):
     assert data["map"]["size"] == [32, 12] and data["map"]["corner"] == [199, 99]
     assert data["start"] == [2, 2] and "of which 32 x 12 are shown" in data["summary"]
     for cells, record in zip(unpacked_paths(data), found, strict=True):
-        np.testing.assert_array_equal(cells + [199, 99], record.cells)
+        np.testing.assert_array_equal(np.add(cells, [199, 99]), record.cells)
 
 
 @given(
@@ -197,7 +197,7 @@ def test_a_notebook_shows_the_page_in_a_sandbox_and_a_picture_beside_it():
 @pytest.mark.parametrize("wrong", [None, 3, "paths.json", [1]])
 def test_what_is_no_set_is_refused(wrong, tmp_path):
     for make in (explore, lambda paths: save_page(paths, tmp_path / "a.html")):
-        with pytest.raises(GridPathError, match="trade_off is .*, expected a TradeOffSet"):
+        with pytest.raises(GridPathError, match=r"trade_off is .*, expected a TradeOffSet"):
             make(wrong)
     assert not (tmp_path / "a.html").exists()
 
