@@ -10,8 +10,9 @@ from pymoo_gridpath.lazy import lazy
 if TYPE_CHECKING:
     from pymoo_gridpath.algorithms import ExactFront, ahmed_deb_2013, make_algorithm, minimize_runs
     from pymoo_gridpath.convergence import ConvergenceRecorder
-    from pymoo_gridpath.decision import TradeOffSet
+    from pymoo_gridpath.decision import TradeOffSet, load_json
     from pymoo_gridpath.errors import GridPathError
+    from pymoo_gridpath.explorer import explore, save_page
     from pymoo_gridpath.grid import OccupancyGrid
     from pymoo_gridpath.maps import load_map, shipped_maps
     from pymoo_gridpath.operators import paper_operators, path_operators
@@ -30,6 +31,8 @@ _HOMES = {
     "TradeOffSet": "decision",
     "__version__": "versions",
     "ahmed_deb_2013": "algorithms",
+    "explore": "explorer",
+    "load_json": "decision",
     "load_map": "maps",
     "make_algorithm": "algorithms",
     "minimize_runs": "algorithms",
@@ -42,6 +45,7 @@ _HOMES = {
     "random_dense_grid": "problems",
     "register": "registry",
     "save_figures": "plotting",
+    "save_page": "explorer",
     "shipped_maps": "maps",
 }
 
@@ -55,6 +59,8 @@ __all__ = [
     "TradeOffSet",
     "__version__",
     "ahmed_deb_2013",
+    "explore",
+    "load_json",
     "load_map",
     "make_algorithm",
     "minimize_runs",
@@ -67,6 +73,7 @@ __all__ = [
     "random_dense_grid",
     "register",
     "save_figures",
+    "save_page",
     "shipped_maps",
 ]
 __getattr__, __dir__ = lazy(__name__, _HOMES)

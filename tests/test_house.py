@@ -15,7 +15,19 @@ ROOT = Path(pymoo_gridpath.__file__).parent
 # From the ground up: a room imports from itself and from those before it. What stands in one line is one floor.
 FLOORS = (
     (
-        *("errors", "checks", "compiled", "deprecation", "files", "lazy", "memory", "neighbourhood", "progress", "registry"),
+        *(
+            "errors",
+            "checks",
+            "compiled",
+            "deprecation",
+            "files",
+            "lazy",
+            "memory",
+            "neighbourhood",
+            "pictures",
+            "progress",
+            "registry",
+        ),
         "versions",
     ),
     ("grid",),
@@ -32,7 +44,7 @@ FLOORS = (
     ("planners",),
     ("algorithms",),
     ("decision", "convergence"),
-    ("plotting",),
+    ("plotting", "explorer"),
     ("study",),
     ("testing",),
     ("cli",),

@@ -80,3 +80,11 @@ def folder(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("'' is not a folder; expected its path, '.' for the current one")
     return Path(text)
+
+
+def html_file(text: str) -> Path:
+    """Return the path of a file to write, in a folder that there is."""
+    path = Path(text)
+    if not text or path.is_dir() or not path.parent.is_dir():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a file in a folder that exists, expected one such as front.html")
+    return path

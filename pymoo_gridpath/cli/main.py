@@ -10,6 +10,7 @@ from importlib.metadata import version
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.cli.arguments import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_OK, Parser, join_cells
+from pymoo_gridpath.cli.explore import add_explore_command
 from pymoo_gridpath.cli.maps import add_map_commands
 from pymoo_gridpath.cli.plan import add_plan_command
 from pymoo_gridpath.cli.study import add_study_commands
@@ -78,6 +79,7 @@ def _parser() -> Parser:
     parser.add_argument("--version", action="version", version=f"%(prog)s {version('pymoo_gridpath')}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", title="commands")
     add_plan_command(commands)
+    add_explore_command(commands)
     add_map_commands(commands)
     add_study_commands(commands)
     return parser

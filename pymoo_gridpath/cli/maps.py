@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import os
+import shutil
+import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pymoo_gridpath import pictures
 from pymoo_gridpath.cli.arguments import EXIT_OK
 from pymoo_gridpath.errors import counted, visible
 
@@ -87,7 +91,19 @@ def _info(arguments) -> int:
         rows["query"] = f"from {_text(known.start)} to {_text(known.goal)}, robot radius {known.radius:g} m"
     for key, value in rows.items():
         print(f"{key:<13} {visible(value)}")
+    show(pictures.Scene(grid.occupied, grid.unknown))
     return EXIT_OK
+
+
+def show(scene: pictures.Scene) -> None:
+    """Draw a map on standard output if that is a terminal which can; files and pipes get nothing."""
+    if not pictures.can_draw(sys.stdout):
+        return
+    columns, lines = shutil.get_terminal_size()
+    colors = not os.environ.get("NO_COLOR")
+    print(pictures.half_blocks(scene, columns, max(lines - 4, 8), colors))
+    if scene.lines and colors:
+        print(pictures.legend(scene))
 
 
 def _text(cell) -> str:

@@ -8,8 +8,18 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pymoo_gridpath.cli.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, cell, folder, natural, operators, positive
-from pymoo_gridpath.cli.maps import add_reading, load, unknown_of
+from pymoo_gridpath.cli.arguments import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    cell,
+    folder,
+    html_file,
+    natural,
+    operators,
+    positive,
+)
+from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
 
@@ -80,6 +90,8 @@ def add_plan_command(commands) -> None:
         metavar="DIR",
         help="where files go (default: gridpath-out)",
     )
+    plan.add_argument("--html", type=html_file, metavar="FILE", help="write a page to choose a path from")
+    plan.add_argument("--show", action="store_true", help="draw the map with the paths on a terminal that can")
     plan.add_argument("--units", choices=("cells", "m"), default="cells", help="axes of the map figure (default: cells)")
 
 
@@ -89,7 +101,9 @@ def _plan(arguments) -> int:
     from pymoo_gridpath.algorithms import find_algorithm
     from pymoo_gridpath.compiled import COMPILED
     from pymoo_gridpath.convergence import ConvergenceRecorder
+    from pymoo_gridpath.decision.drawn import scene_of
     from pymoo_gridpath.decision.provenance import describe_source
+    from pymoo_gridpath.explorer import save_page
     from pymoo_gridpath.maps.queries import check_grown, ends_of, query_of
     from pymoo_gridpath.plotting import save_figures
     from pymoo_gridpath.problems import GridPathProblem
@@ -144,6 +158,8 @@ def _plan(arguments) -> int:
     elif results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
     print(trade_off.table(max_rows=MAX_ROWS))
+    if arguments.show:
+        show(scene_of(trade_off))
     if trade_off.advice:
         say(trade_off.advice)
     if len(results) > 1:
@@ -152,6 +168,8 @@ def _plan(arguments) -> int:
     history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
     figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
     print("figures: " + ", ".join(visible(file) for file in figures))
+    if arguments.html:
+        print(f"page: {visible(save_page(trade_off, arguments.html))}")
     if stop.requested:
         return EXIT_INTERRUPTED
     if not trade_off.feasible:

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import io
 import json
-import os
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.decision.provenance import plain
-from pymoo_gridpath.errors import GridPathError, counted, visible
+from pymoo_gridpath.decision.provenance import describe_problem, plain
+from pymoo_gridpath.errors import GridPathError, counted
 
 FORMAT = "pymoo_gridpath trade-off set"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 
 _HEADERS = {
     "length": "length",
@@ -26,7 +25,6 @@ _HEADERS = {
     "interfering_cells": "interfering",
     "clearance": "clearance",
 }
-_FIELDS = ("cells", "points", "length", "vulnerability", "turn", "interfering_cells", "names")
 
 
 def csv_text(trade_off) -> str:
@@ -40,61 +38,49 @@ def csv_text(trade_off) -> str:
     return text.getvalue()
 
 
+def data_frame(trade_off):
+    """Return what `csv_text` writes as a pandas.DataFrame; see `TradeOffSet.to_pandas`."""
+    try:
+        pandas = importlib.import_module("pandas")
+    except ImportError:
+        raise GridPathError(
+            "pandas is not installed, expected it for to_pandas; pip install 'pymoo_gridpath[pandas]'"
+        ) from None
+    names = [";".join(trade_off.names(k)) for k in range(len(trade_off))]
+    return pandas.DataFrame({"path": range(len(trade_off)), "names": names, **trade_off.measures})
+
+
 def json_text(trade_off) -> str:
     """Return a trade-off set as strict JSON, one path a line."""
+    problem = trade_off.problem
     head = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
+        **describe_problem(problem),
         **trade_off.meta,
         "objectives": list(trade_off.objective_names),
+        "labels": {objective.name: objective.label for objective in problem.objectives},
         "feasible": trade_off.feasible,
     }
-    lines = [json.dumps(plain(head), allow_nan=False, indent=1).removesuffix("\n}"), ",\n", ' "paths": [\n']
+    runs = json.dumps(runs_of(problem.grid.occupied))
     records = [json.dumps(plain(record.as_dict()), allow_nan=False) for record in trade_off]
-    return "".join([*lines, ",\n".join(f"  {record}" for record in records), "\n ]\n}\n"])
+    lines = ",\n".join(f"  {record}" for record in records)
+    start = json.dumps(plain(head), allow_nan=False, indent=1).removesuffix("\n}")
+    return f'{start},\n "occupied_runs": {runs},\n "paths": [\n{lines}\n ]\n}}\n'
 
 
-def load_json(path: str | os.PathLike[str]) -> dict:
-    """Read a file that `TradeOffSet.to_json` wrote.
+def runs_of(occupied: np.ndarray) -> list[int]:
+    """Return how many cells are free, then occupied, then free, and so on, row by row from the bottom.
 
-    Parameters
-    ----------
-    path : str or path-like
-
-    Returns
-    -------
-    dict
-        The file's content: ``map``, ``query``, ``settings``, ``seed``, ``versions``, ``objectives``, ``feasible`` and
-        ``paths``, a list of records. The ``genes`` of its records rebuild the set through `TradeOffSet.from_genes`.
-
-    Raises
-    ------
-    GridPathError
-        If the file cannot be read or is no trade-off set of this format.
+    Examples
+    --------
+    >>> runs_of(np.array([[True, True, False], [False, False, True]]))
+    [0, 2, 3, 1]
     """
-    checks.file_path("path", path)
-    shown = visible(path)
-    try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise GridPathError(f"{shown}: the file cannot be read ({error.strerror}), expected a trade-off set") from None
-    except (ValueError, RecursionError) as error:
-        why = f"line {error.lineno}" if isinstance(error, json.JSONDecodeError) else "not text, or nested too deep"
-        raise GridPathError(f"{shown}: the file is not JSON ({why}), expected a trade-off set") from None
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise GridPathError(f"{shown}: the file holds no trade-off set, expected one with the format {FORMAT!r}")
-    if content.get("format_version") != FORMAT_VERSION:
-        raise GridPathError(
-            f"{shown}: format_version is {checks.shown(content.get('format_version'))}, expected {FORMAT_VERSION}"
-        )
-    records = content.get("paths")
-    if not isinstance(records, list) or not records:
-        raise GridPathError(f"{shown}: paths is missing or empty, expected a list of records")
-    for k, record in enumerate(records):
-        missing = [field for field in _FIELDS if not isinstance(record, dict) or field not in record]
-        if missing:
-            raise GridPathError(f"{shown}: path {k} has no {missing[0]!r}, expected the fields {', '.join(_FIELDS)}")
-    return content
+    flat = occupied.ravel()
+    changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
+    runs = np.diff(changes, prepend=0, append=flat.size).tolist()
+    return [0, *runs] if flat[0] else runs
 
 
 def table_text(trade_off, max_rows: int | None = None) -> str:

@@ -15,12 +15,14 @@ from pymoo.core.algorithm import Algorithm
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.known import find_algorithm
-from pymoo_gridpath.decision import export, provenance
+from pymoo_gridpath.decision import drawn, export, provenance
 from pymoo_gridpath.decision.knee import knee_point
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
+from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.pictures import png
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.versions import versions
 
@@ -63,6 +65,8 @@ class PathRecord:
         The plain objectives of the problem.
     genes : numpy.ndarray, shape (n_var,)
         The row of decision variables that codes it.
+    grid : OccupancyGrid, optional
+        The map that it leads across.
     """
 
     index: int
@@ -77,10 +81,17 @@ class PathRecord:
     clearance: float
     objectives: dict[str, float]
     genes: np.ndarray = field(repr=False)
+    grid: OccupancyGrid | None = field(default=None, repr=False)
 
     def as_dict(self) -> dict:
-        """Return the record as a dict of its attributes, arrays as arrays."""
-        return dict(vars(self))
+        """Return the record as a dict of its attributes but for the map, arrays as arrays."""
+        return {name: value for name, value in vars(self).items() if name != "grid"}
+
+    def _repr_html_(self) -> str:
+        return drawn.record_html(self)
+
+    def _repr_png_(self) -> bytes:
+        return png(drawn.record_scene(self))
 
 
 class TradeOffSet:
@@ -200,6 +211,16 @@ class TradeOffSet:
         _check_settings(settings)
         return cls(problem, X, _meta(problem, settings, []))
 
+    @classmethod
+    def _known(cls, problem, X: np.ndarray, F: np.ndarray, measures: dict[str, np.ndarray], feasible: bool, meta: dict):
+        """Return a set of which everything is known: paths of a set that was chosen and measured before."""
+        made = cls.__new__(cls)
+        made.problem, made.X, made.F, made.measures, made.feasible, made.meta = problem, X, F, measures, feasible, meta
+        made.paths = problem.decode(X)
+        made._algorithms = []
+        made._cells = [np.asarray(made.paths.cells(k)) for k in range(len(X))]
+        return made
+
     def _measure(self, measures: PathMeasures) -> dict[str, np.ndarray]:
         grid, box = self.problem.grid, self.problem.representation.box
         field = BoxedField(clearance(grid.crop(box)), box, grid.width, functools.partial(clearance, grid))
@@ -298,6 +319,7 @@ class TradeOffSet:
             clearance=value["clearance"],
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
+            grid=self.problem.grid,
         )
 
     # -- words and files ----------------------------------------------------------------------------------------------
@@ -371,6 +393,27 @@ class TradeOffSet:
     def __repr__(self) -> str:
         legal = "" if self.feasible else ", NOT feasible"
         return f"<TradeOffSet: {len(self)} paths in {', '.join(self.objective_names)}{legal}>"
+
+    def _repr_html_(self) -> str:
+        return drawn.html_of(self)
+
+    def _repr_png_(self) -> bytes:
+        return png(drawn.scene_of(self))
+
+    def to_pandas(self):
+        """Return one row a path with its number, its names and every measure, as `to_csv` writes them.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With the columns ``path``, ``names`` (joined by ``;``, empty for most) and those of `measures`.
+
+        Raises
+        ------
+        GridPathError
+            If pandas is not installed; it is the extra ``pandas``.
+        """
+        return export.data_frame(self)
 
     def to_csv(self, path: str | os.PathLike[str]) -> Path:
         """Write one row a path with its number, its names (joined by ``;``) and every measure in full precision.

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from pymoo_gridpath import checks
+from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError
+from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError, visible
 from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_pose, pairs
 from pymoo_gridpath.grid.box import Box
 from pymoo_gridpath.grid.cells import Cells
@@ -151,6 +151,18 @@ class OccupancyGrid(Cells):
             f"<OccupancyGrid {self._name!r}: {self.width} x {self.height} cells of {self._resolution:g} m, "
             f"{self.n_occupied} occupied, {steps_in_words(self._moves, self._corner_cutting)}>"
         )
+
+    def _repr_png_(self) -> bytes:
+        return pictures.png(pictures.Scene(self._occupied, self._unknown))
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "cells": f"{self.width} x {self.height}",
+            "metres a cell": f"{self._resolution:g}",
+            "occupied": f"{self.n_occupied} ({self.n_occupied / self._occupied.size:.0%})",
+            "steps": steps_in_words(self._moves, self._corner_cutting),
+        }
+        return pictures.page(self._repr_png_(), visible(self._name), rows, "map, occupied cells dark")
 
     # -- cells --------------------------------------------------------------------------------------------------------
 

@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, ScaledTranslation
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.decision.drawn import drawn_box, drawn_field
 from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import check_field, obstacle_potential
@@ -134,7 +134,7 @@ def plot_paths(
     box = drawn_box(trade_off)
     grid = problem.grid.crop(box)
     if isinstance(potential, bool | np.bool_) and potential:
-        field = PathMeasures(problem).field if box == problem.representation.box else obstacle_potential(problem.grid)
+        field = drawn_field(trade_off, box)
     else:
         field = _field(problem.grid, potential)
         field = field if field is None else field[box.slices]
@@ -274,15 +274,6 @@ def _draw_movers(ax: Axes, trade_off, units: Units) -> None:
         label = "obstacles that move" if k == 0 else None
         look = {"color": style.OCCUPIED, "linewidth": 1.0, "linestyle": ":", "marker": "s", "markersize": 5, "zorder": 3}
         ax.plot(*points[:, k].T, markevery=[0], label=label, **look)
-
-
-def drawn_box(trade_off) -> Box:
-    """Return the part of the map that is drawn: that which can be reached, unless paths lead elsewhere."""
-    problem = trade_off.problem
-    box = problem.representation.box
-    cells = np.concatenate([record.cells for record in trade_off])
-    inside = (cells >= (box.x0, box.y0)).all() and (cells < (box.x1, box.y1)).all()
-    return box if inside else problem.grid.whole
 
 
 def figure_size(grid: OccupancyGrid) -> tuple[float, float]:

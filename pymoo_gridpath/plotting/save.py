@@ -12,13 +12,14 @@ from matplotlib.figure import Figure
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
+from pymoo_gridpath.decision.drawn import drawn_box
 from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.convergence import as_recorders, plot_convergence
 from pymoo_gridpath.plotting.fronts import as_reference, plot_front
-from pymoo_gridpath.plotting.maps import Units, drawn_box, figure_size, plot_paths
+from pymoo_gridpath.plotting.maps import Units, figure_size, plot_paths
 from pymoo_gridpath.plotting.style import STYLE
 
 # What each format writes about the time of writing, which would make equal figures differ.

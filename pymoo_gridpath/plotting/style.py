@@ -16,6 +16,9 @@ from numpy.typing import ArrayLike
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import names_for
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.pictures import COLORS
+from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
+from pymoo_gridpath.pictures import OTHERS as OTHERS
 
 
 @dataclass(frozen=True)
@@ -27,17 +30,15 @@ class NameStyle:
     marker: str
 
 
-# Colours of Okabe and Ito's palette; dashes and markers tell the paths apart in grey print too.
+# Dashes and markers tell the paths apart in grey print too.
 NAME_STYLES = {
-    "earliest": NameStyle("#56B4E9", (0, (7, 1.2)), "v"),
-    "shortest": NameStyle("#0072B2", "-", "s"),
-    "safest": NameStyle("#009E73", (0, (5, 1.6)), "D"),
-    "smoothest": NameStyle("#D55E00", (0, (1.2, 1.2)), "^"),
-    "knee": NameStyle("#CC3377", (0, (6, 1.5, 1.2, 1.5)), "o"),
+    "earliest": NameStyle(COLORS["earliest"], (0, (7, 1.2)), "v"),
+    "shortest": NameStyle(COLORS["shortest"], "-", "s"),
+    "safest": NameStyle(COLORS["safest"], (0, (5, 1.6)), "D"),
+    "smoothest": NameStyle(COLORS["smoothest"], (0, (1.2, 1.2)), "^"),
+    "knee": NameStyle(COLORS["knee"], (0, (6, 1.5, 1.2, 1.5)), "o"),
 }
-OCCUPIED = "#3b3f45"
 POTENTIAL = ["#ffffff", "#f3d9a4"]  # a list: of a tuple of two, matplotlib 3.8.0 takes the second for an opacity
-OTHERS = "#8a8f98"
 REFERENCE = "#5b5f66"
 WARNING = "#b00020"
 

@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 from pymoo.core.problem import Problem
 
-from pymoo_gridpath import checks
+from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted
+from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted, visible
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.objectives import Objective, boxed_field_of, make_objectives, prepared, visiting_costs
@@ -217,6 +217,22 @@ class GridPathProblem(Problem):
     def objective_names(self) -> list[str]:
         """Names of the objectives in the order of the columns of F."""
         return [objective.name for objective in self.objectives]
+
+    # -- in a notebook ------------------------------------------------------------------------------------------------
+
+    def _repr_png_(self) -> bytes:
+        scene = pictures.Scene(self.grid.occupied, self.grid.unknown, start=self.start, goal=self.goal)
+        return pictures.png(scene.cropped(*self.representation.box))
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "map": visible(self.grid.name),
+            "from, to": f"{self.start}, {self.goal}",
+            "objectives": visible(", ".join(self.objective_names)),
+            "representation": f"{visible(self.representation.name)}, {counted(self.n_var, 'gene')}",
+            "obstacles": self.obstacles,
+        }
+        return pictures.page(self._repr_png_(), type(self).__name__, rows, "map with start (disc) and goal (square)")
 
     # -- time ---------------------------------------------------------------------------------------------------------
 

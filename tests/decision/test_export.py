@@ -2,7 +2,9 @@
 
 import copy
 import csv
+import importlib
 import json
+import os
 import pickle
 import re
 import subprocess
@@ -18,7 +20,7 @@ from trade_offs import draw, make_problem
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms.variable_length import VariableLengthGA
-from pymoo_gridpath.decision import NAMES, TradeOffSet, export, load_json
+from pymoo_gridpath.decision import NAMES, TradeOffSet
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.planners import Plan, Planner
 
@@ -69,38 +71,12 @@ def test_json_holds_every_path_and_what_made_it(trade_off, tmp_path):
         assert stored["names"] == list(record.names)
         for name in MEASURES:
             assert stored[name] == getattr(record, name)
-    assert load_json(tmp_path / "front.json") == content
 
 
 def test_json_has_null_where_a_number_is_not_finite(tmp_path):
     problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (0, 0), (4, 4), "integer")
     path = TradeOffSet.from_genes(problem, [[0, 1, 1, 1]]).to_json(tmp_path / "front.json")
     assert strict(path.read_text())["paths"][0]["clearance"] is None
-
-
-def test_a_set_is_rebuilt_from_the_genes_of_its_json(trade_off, tmp_path):
-    content = load_json(trade_off.to_json(tmp_path / "front.json"))
-    again = TradeOffSet.from_genes(trade_off.problem, [record["genes"] for record in content["paths"]])
-    assert np.array_equal(again.F, trade_off.F)
-
-
-@pytest.mark.parametrize(
-    ("text", "word"),
-    [
-        ("{", "not JSON"),
-        ("[]", "no trade-off set"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 99}', "format_version"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": []}', "paths"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 1, "paths": [{"cells": []}]}', "points"),
-    ],
-)
-def test_a_file_that_is_no_set_is_refused(text, word, tmp_path):
-    path = tmp_path / "bad.json"
-    path.write_text(text)
-    with pytest.raises(GridPathError, match=word):
-        load_json(path)
-    with pytest.raises(GridPathError, match="cannot be read"):
-        load_json(tmp_path / "none.json")
 
 
 def test_csv_gives_every_measure_back(trade_off, tmp_path):
@@ -112,6 +88,23 @@ def test_csv_gives_every_measure_back(trade_off, tmp_path):
     assert [tuple(filter(None, row["names"].split(";"))) for row in rows] == [record.names for record in trade_off]
 
 
+def test_pandas_gets_what_the_csv_file_holds(trade_off, tmp_path):
+    pandas = pytest.importorskip("pandas", reason="pandas is not installed")
+    frame = trade_off.to_pandas()
+    read = pandas.read_csv(trade_off.to_csv(tmp_path / "front.csv"), keep_default_na=False)
+    pandas.testing.assert_frame_equal(frame, read, check_dtype=False)
+    assert frame["turn"].dtype.kind == "i" and frame["names"].tolist() == [";".join(record.names) for record in trade_off]
+
+
+def test_without_pandas_a_sentence_names_the_extra(trade_off, monkeypatch):
+    def missing(name):
+        raise ModuleNotFoundError(name)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    with pytest.raises(GridPathError, match=r"pip install 'pymoo_gridpath\[pandas\]'"):
+        trade_off.to_pandas()
+
+
 def test_a_crash_leaves_the_old_file_and_no_other(trade_off, tmp_path, monkeypatch):
     path = tmp_path / "front.json"
     path.write_text("old")
@@ -119,7 +112,7 @@ def test_a_crash_leaves_the_old_file_and_no_other(trade_off, tmp_path, monkeypat
     def crash(*args):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(export.os, "replace", crash)
+    monkeypatch.setattr(os, "replace", crash)
     with pytest.raises(KeyboardInterrupt):
         trade_off.to_json(path)
     assert path.read_text() == "old"

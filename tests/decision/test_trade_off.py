@@ -1,6 +1,7 @@
 """From Results to a trade-off set: what is kept, and what becomes of runs without a legal path."""
 
 import itertools
+import json
 import math
 import pickle
 
@@ -11,7 +12,7 @@ from pymoo.core.result import Result
 from trade_offs import draw, make_problem, result_of, run
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
-from pymoo_gridpath.decision import TradeOffSet, load_json
+from pymoo_gridpath.decision import TradeOffSet
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.objectives import Objective, Vulnerability
 from pymoo_gridpath.representations import CellSequence
@@ -136,7 +137,7 @@ def test_paths_by_cells_make_the_same_set(corner_cutting, tmp_path):
     for name, values in expected.measures.items():
         assert np.array_equal(found.measures[name], values), name
     assert expected.to_csv(tmp_path / "a.csv").read_bytes() == found.to_csv(tmp_path / "b.csv").read_bytes()
-    content = load_json(found.to_json(tmp_path / "b.json"))
+    content = json.loads(found.to_json(tmp_path / "b.json").read_text())
     settings = content["settings"]
     assert (settings["representation"], settings["axis"], settings["max_cells"]) == ("cells", None, 64)
     again = TradeOffSet.from_genes(found.problem, [record["genes"] for record in content["paths"]])

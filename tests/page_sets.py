@@ -1,0 +1,29 @@
+"""Trade-off sets for pages: of two and of three objectives, with names that nobody should have."""
+
+import functools
+
+import numpy as np
+
+from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet
+from pymoo_gridpath.objectives import Objective, Vulnerability
+
+HOSTILE = "</script><script>window.hacked = 1</script><img src=x onerror=hacked=1> \"'&\u2028 @data@"
+
+
+class Hostile(Objective):
+    name = "</title><b>\"'"
+    label = "<img src=x onerror='hacked=1'> [</script>]"
+
+    def field(self, grid):
+        return np.add.outer(np.arange(grid.height), np.zeros(grid.width))
+
+
+@functools.cache
+def exact_set(n_obj: int = 2, name: str = "room", hostile: bool = False, resolution: float = 0.25) -> TradeOffSet:
+    """Return the exact front of a room with two obstacles, on a map that is turned."""
+    occupied = np.zeros((12, 16), dtype=bool)
+    occupied[3:9, 4:6] = occupied[4:11, 10:12] = True
+    grid = OccupancyGrid(occupied, resolution, (1.5, -2.0, 0.5), name=name)
+    objectives = ["length", Vulnerability(variance=2.0), Hostile() if hostile else "turn"][:n_obj]
+    problem = GridPathProblem(grid, (0, 5), (15, 6), "cells", objectives)
+    return TradeOffSet.from_genes(problem, problem.pareto_set(max_seconds=60))
