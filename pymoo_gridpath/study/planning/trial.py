@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
-from pymoo_gridpath.study.planning.canonical import n_cells
+from pymoo_gridpath.study.planning.canonical import n_cells, steps_of
 
 # Of a trial, where the algorithm takes so few.
 _POP_SIZE = 12
@@ -44,9 +44,8 @@ class Pair(NamedTuple):
     @property
     def kind(self) -> str:
         """The same for pairs of which one trial is enough: what operators and algorithms tell apart."""
-        grid = self.problem["grid"]
         of_problem = [self.problem["representation"], self.problem["obstacles"], len(self.problem["objectives"])]
-        return json.dumps([*of_problem, grid.get("random", grid)["corner_cutting"], self.algorithm], sort_keys=True)
+        return json.dumps([*of_problem, steps_of(self.problem["grid"]), self.algorithm], sort_keys=True)
 
 
 def one_of_each_kind(pairs: list[Pair]) -> list[Pair]:
@@ -71,10 +70,10 @@ def run_briefly(pair: Pair) -> None:
 def _small(pair: Pair) -> Pair:
     problem, algorithm, grid = dict(pair.problem), dict(pair.algorithm), pair.grid
     if n_cells(problem["grid"]) > _MOST_CELLS:
-        kept = problem["grid"].get("random", problem["grid"])["corner_cutting"]
+        kept = steps_of(problem["grid"])
         last = _STAND_IN["size"] - 1
         grid = None
-        problem |= {"grid": {"random": {**_STAND_IN, "corner_cutting": kept}}, "start": [0, 0], "goal": [last, last]}
+        problem |= {"grid": {"random": _STAND_IN | kept}, "start": [0, 0], "goal": [last, last]}
     if "pop_size" in algorithm:
         algorithm["pop_size"] = min(algorithm["pop_size"], _POP_SIZE)
     if "n_offsprings" in algorithm.get("parameters", {}):

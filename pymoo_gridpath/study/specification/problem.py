@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, StudyError
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps import MAX_CELLS
 from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.problems import OBSTACLES
@@ -18,6 +18,8 @@ from pymoo_gridpath.study.specification.base import AXES, check_problem_settings
 from pymoo_gridpath.study.specification.kinds import OBJECTIVE
 
 UNKNOWN = ("free", "occupied")
+# What says which steps a grid has.
+_STEPS = ("corner_cutting", "moves")
 
 
 @dataclass(frozen=True)
@@ -32,8 +34,10 @@ class RandomFamily:
         Probability of an obstacle in a cell off the path, 0 to 1.
     seeds : int, sequence of int or mapping
         One grid each: how many (from 1 on), a list, or ``{"first": 100, "count": 11}``.
-    corner_cutting : bool, default True
-        As in the paper. Where corners may not be cut, a grid may turn out to have no path, which `plan_study` refuses.
+    corner_cutting : bool or "one side", default True
+        As in the paper. Elsewhere a grid may turn out to have no path, which `plan_study` refuses.
+    moves : {8, 4}, default 8
+        How many neighbours a cell has.
     """
 
     owner: ClassVar[str] = "a random family"
@@ -41,7 +45,8 @@ class RandomFamily:
     size: int
     p0: float
     seeds: Any = 1
-    corner_cutting: bool = True
+    corner_cutting: CornerCutting = True
+    moves: int = 8
 
     def __post_init__(self):
         set_fields(
@@ -49,7 +54,8 @@ class RandomFamily:
             size=values.whole(self.size, ("size",), 2, int(MAX_CELLS**0.5)),
             p0=values.real(self.p0, ("p0",), 0.0, 1.0),
             seeds=values.seeds(self.seeds, ("seeds",)),
-            corner_cutting=values.flag(self.corner_cutting, ("corner_cutting",)),
+            corner_cutting=values.corner_cutting(self.corner_cutting, ("corner_cutting",)),
+            moves=values.moves(self.moves, ("moves",)),
         )
 
 
@@ -91,7 +97,7 @@ class ProblemSpec:
         Cells (x, y), y up; by default those that the map names.
     radius : float, default 0
         Robot radius in metres, by which obstacles are grown.
-    resolution, unknown, threshold, corner_cutting : optional
+    resolution, unknown, threshold, corner_cutting, moves : optional
         How the map is read, see `pymoo_gridpath.maps.load_map`.
     objectives, representation, obstacles, penalty, potential_limit, axis : optional
         See `GridPathProblem`. An objective or the representation may be of your own: the path of its class,
@@ -118,7 +124,8 @@ class ProblemSpec:
     resolution: float | None = None
     unknown: str | None = None
     threshold: float | None = None
-    corner_cutting: bool | None = None
+    corner_cutting: CornerCutting | None = None
+    moves: int | None = None
     objectives: Any = ("length", "vulnerability")
     representation: Any = None
     obstacles: str = "penalty"
@@ -134,7 +141,8 @@ class ProblemSpec:
         set_given(self, "resolution", check=lambda value, where: values.real(value, where, open_below=True))
         set_given(self, "unknown", check=lambda value, where: values.choice(value, UNKNOWN, where))
         set_given(self, "threshold", check=lambda value, where: values.real(value, where, 0.0, 1.0))
-        set_given(self, "corner_cutting", check=values.flag)
+        set_given(self, "corner_cutting", check=values.corner_cutting)
+        set_given(self, "moves", check=values.moves)
         set_fields(self, objectives=_objectives(self.objectives))
         set_fields(self, obstacles=values.choice(self.obstacles, OBSTACLES, ("obstacles",)))
         set_fields(self, axis=values.choice(self.axis, AXES, ("axis",)))
@@ -154,13 +162,13 @@ class ProblemSpec:
         if self.random is not None:
             set_fields(self, random=make_spec(RandomFamily, self.random, ("random",)))
         misplaced = {
-            "random": ("start", "goal", "radius", "resolution", "unknown", "threshold", "corner_cutting", "queries"),
-            "grid": ("resolution", "unknown", "threshold", "corner_cutting"),
+            "random": ("start", "goal", "radius", "resolution", "unknown", "threshold", *_STEPS, "queries"),
+            "grid": ("resolution", "unknown", "threshold", *_STEPS),
         }
         for source, keys in misplaced.items():
             for key in keys:
                 if getattr(self, source) is not None and getattr(self, key) not in (None, 0.0):
-                    inside = "; write it into the table random" if key == "corner_cutting" and source == "random" else ""
+                    inside = "; write it into the table random" if key in _STEPS and source == "random" else ""
                     raise StudyError(f"{key} is for maps from a file, not for a problem with {source}{inside}", (key,))
         if self.scen is not None and (self.start or self.goal):
             key = "start" if self.start else "goal"
