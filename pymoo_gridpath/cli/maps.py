@@ -13,6 +13,7 @@ import numpy as np
 from pymoo_gridpath import pictures
 from pymoo_gridpath.cli.arguments import EXIT_OK
 from pymoo_gridpath.errors import counted, visible
+from pymoo_gridpath.neighbourhood import MOVES, ONE_SIDE, steps_in_words
 
 if TYPE_CHECKING:
     from pymoo_gridpath.grid import OccupancyGrid
@@ -29,6 +30,10 @@ def add_map_commands(commands) -> None:
     add_reading(info)
 
 
+# The options, by the names that `load_map` has for them.
+_READING = ("resolution", "unknown", "threshold", "corner_cutting", "moves")
+
+
 def add_reading(parser: argparse.ArgumentParser) -> None:
     """Add the options by which maps are read."""
     group = parser.add_argument_group("reading the map")
@@ -37,14 +42,23 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--threshold", type=float, metavar="T", help="grey level below which an image's pixel is occupied, 0 to 1"
     )
-    group.add_argument("--corner-cutting", action="store_true", default=None, help="allow diagonal steps past occupied cells")
+    corners = group.add_mutually_exclusive_group()
+    corners.add_argument("--corner-cutting", action="store_true", default=None, help="allow diagonal steps past occupied cells")
+    corners.add_argument(
+        "--one-side",
+        dest="corner_cutting",
+        action="store_const",
+        const=ONE_SIDE,
+        help="allow diagonal steps past one occupied cell, not between two",
+    )
+    group.add_argument("--moves", type=int, choices=MOVES, help="neighbours of a cell: 8, or 4 for no diagonal steps")
 
 
 def load(name: str, arguments) -> OccupancyGrid:
     """Return the grid of a file or of a shipped map, read with the options that `add_reading` adds."""
     from pymoo_gridpath.maps import load_map
 
-    return load_map(name, **{key: getattr(arguments, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")})
+    return load_map(name, **{key: getattr(arguments, key) for key in _READING})
 
 
 def unknown_of(grid: OccupancyGrid) -> str | None:
@@ -85,7 +99,7 @@ def _info(arguments) -> int:
         "occupied": f"{occupied} cells, {occupied / grid.occupied.size:.1%}",
         **({} if (unknown := unknown_of(grid)) is None else {"unknown": unknown}),
         "free regions": f"{len(sizes)}" + (f", the largest of {sizes.max()} cells" if len(sizes) else ""),
-        "corners": "may be cut" if grid.corner_cutting else "may not be cut",
+        "steps": steps_in_words(grid.moves, grid.corner_cutting),
     }
     if known.start and known.goal:
         rows["query"] = f"from {_text(known.start)} to {_text(known.goal)}, robot radius {known.radius:g} m"

@@ -34,6 +34,7 @@ def describe_problem(problem) -> dict:
             "resolution": grid.resolution,
             "origin": list(grid.origin),
             "corner_cutting": grid.corner_cutting,
+            "moves": grid.moves,
             "occupied_cells": grid.n_occupied,
             "sha256": grid.digest,
         },

@@ -24,7 +24,7 @@ class Cells:
         self._unknown = None if unknown is None else as_cells("unknown", unknown)
         if self._unknown is not None and self._unknown.shape != self.shape:
             raise GridError(f"unknown has the shape {self._unknown.shape}, expected that of the grid, {self.shape}")
-        self._corner_cutting = as_corner_cutting(corner_cutting)
+        self._corner_cutting: CornerCutting = as_corner_cutting(corner_cutting)
         self._moves = as_moves(moves)
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._files import BLOCK, check_size, make_grid, require_file
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
@@ -18,7 +18,7 @@ MAGIC = b"\x93NUMPY"
 
 def read_npy(
     path: str | os.PathLike[str],
-    corner_cutting: bool = False,
+    corner_cutting: CornerCutting = False,
     resolution: float = 1.0,
     origin: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> OccupancyGrid:
@@ -29,7 +29,7 @@ def read_npy(
     path : str or path-like
         The file: an array of shape (height, width) of booleans, or of 0 (free) and 1 (occupied). Row 0 is the *bottom* row, as
         in `OccupancyGrid`, not the top one as in an image. Pickled objects are never loaded.
-    corner_cutting : bool, default False
+    corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell.
     resolution : float, default 1.0
         Side of a cell in metres.

@@ -14,7 +14,7 @@ from PIL import Image, ImageFile, UnidentifiedImageError
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, MapError, visible
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._declared import CountedReader, Tags, check_before, check_exif, check_jpeg, check_png, nodata_of
 from pymoo_gridpath.maps._files import MAX_CELLS, blocks, check_size, check_unknown, make_grid, require_file, warn
 from pymoo_gridpath.maps._ros_yaml import yaml_of_image
@@ -109,7 +109,7 @@ def read_image(
     path: str | os.PathLike[str],
     threshold: float = 0.5,
     unknown: str = "free",
-    corner_cutting: bool = False,
+    corner_cutting: CornerCutting = False,
     resolution: float = 1.0,
     origin: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> OccupancyGrid:
@@ -128,7 +128,7 @@ def read_image(
     unknown : {"free", "occupied"}, default "free"
         What wholly transparent pixels and those without data are. ``"free"`` is what a drawing on a transparent background
         means.
-    corner_cutting : bool, default False
+    corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell.
     resolution : float, default 1.0
         Side of a cell in metres.

@@ -6,12 +6,13 @@ import os
 
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid.arguments import as_moves
 from pymoo_gridpath.maps._files import warn
 from pymoo_gridpath.maps.formats import format_of
 from pymoo_gridpath.maps.shipped import file_of
 
 
-def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
+def load_map(path: str | os.PathLike[str], moves: int | None = None, **options) -> OccupancyGrid:
     """Read a map of any format, or one that ships with the package.
 
     The format is told by the file's content where that is distinctive (images, NumPy arrays, ``type octile``, a line
@@ -22,6 +23,8 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
     ----------
     path : str or path-like
         A map file, or the name of a shipped map such as ``"warehouse"``. A file of that name goes first.
+    moves : {8, 4}, optional
+        How many neighbours a cell has. If not given, the file decides where it says so, else 8.
     **options
         Passed to the reader; None means not given. All readers take ``corner_cutting``; those of formats that say nothing about
         it (all but ROS) take ``resolution`` and ``origin``; `read_ros` and `read_image` take ``unknown``, `read_image` also
@@ -59,7 +62,8 @@ def load_map(path: str | os.PathLike[str], **options) -> OccupancyGrid:
                 path,
                 f"the map format {kind.name!r} does not take the option {key!r}, expected one of {', '.join(kind.options)}",
             )
+    moves = None if moves is None else as_moves(moves)
     grid = kind.read(file, **given)
     if "unknown" in given and grid.unknown is not None and not grid.unknown.any():
         warn(path, "the map has no unknown cell, so that the option 'unknown' has no effect")
-    return grid
+    return grid if moves is None else grid.replace(moves=moves)

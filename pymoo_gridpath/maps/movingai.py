@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
-from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.grid import Cell, CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_text_bytes, short_line, shorten
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
@@ -62,7 +62,7 @@ class ScenQuery:
 
 def read_movingai(
     path: str | os.PathLike[str],
-    corner_cutting: bool = False,
+    corner_cutting: CornerCutting = False,
     resolution: float = 1.0,
     origin: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> OccupancyGrid:
@@ -75,7 +75,7 @@ def read_movingai(
     ----------
     path : str or path-like
         The ``.map`` file; its first row is the top one.
-    corner_cutting : bool, default False
+    corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell. The benchmark's lengths hold for False.
     resolution : float, default 1.0
         Side of a cell in metres; the format has none.

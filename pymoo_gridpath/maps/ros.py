@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from pymoo_gridpath.errors import counted
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._files import blocks, check_unknown, make_grid, warn
 from pymoo_gridpath.maps._ros_yaml import Keys
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
@@ -24,7 +24,7 @@ SAVED_OCCUPIED, SAVED_UNKNOWN, SAVED_FREE = 0, 205, 254
 OCCUPIED_PERCENT = 50
 
 
-def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cutting: bool = False) -> OccupancyGrid:
+def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cutting: CornerCutting = False) -> OccupancyGrid:
     """Read a map of the ROS map server.
 
     Values are read as by the current ``nav2_map_server`` (Navigation2 for ROS 2). Colours become grey by their luminance,
@@ -49,7 +49,7 @@ def read_ros(path: str | os.PathLike[str], unknown: str = "occupied", corner_cut
         image is sought relative to this file.
     unknown : {"occupied", "free"}, default "occupied"
         What unknown cells are.
-    corner_cutting : bool, default False
+    corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell.
 
     Returns

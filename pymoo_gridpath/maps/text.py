@@ -9,7 +9,8 @@ A file is, in UTF-8,
    ``title``           one line about it
    ``resolution``      side of a cell in metres, 1 if absent
    ``origin``          x y yaw (or x y) of the bottom-left corner in metres and radians, 0 0 0 if absent
-   ``corner_cutting``  true or false, false if absent
+   ``corner_cutting``  true, false or one side, false if absent
+   ``moves``           8, or 4 for no diagonal steps, 8 if absent
    ``start``           x y of a good start, a free cell counted from the bottom left
    ``goal``            x y of a good goal, likewise
    ``radius``          radius in metres of a robot that can make that way, 0 (a point) if absent
@@ -29,10 +30,12 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pymoo_gridpath.errors import MapError
-from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.errors import MapError, visible
+from pymoo_gridpath.files import write_whole
+from pymoo_gridpath.grid import Cell, CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, plain, read_text_bytes, short_line, shorten
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat, Query
+from pymoo_gridpath.neighbourhood import MOVES, ONE_SIDE
 
 FREE = ".0"
 OCCUPIED = "#@X1"
@@ -51,26 +54,29 @@ class TextHeader:
         Metres per cell.
     origin : tuple of float or None
         x, y (and yaw) in metres and radians.
-    corner_cutting : bool or None
+    corner_cutting : bool, "one side" or None
     start, goal : (int, int) or None
         Cells (x, y), y up.
     radius : float or None
         Metres.
+    moves : int or None
+        How many neighbours a cell has.
     """
 
     name: str | None = None
     title: str | None = None
     resolution: float | None = None
     origin: tuple[float, ...] | None = None
-    corner_cutting: bool | None = None
+    corner_cutting: CornerCutting | None = None
     start: Cell | None = None
     goal: Cell | None = None
     radius: float | None = None
+    moves: int | None = None
 
 
 def read_text(
     path: str | os.PathLike[str],
-    corner_cutting: bool | None = None,
+    corner_cutting: CornerCutting | None = None,
     resolution: float | None = None,
     origin: Sequence[float] | None = None,
 ) -> OccupancyGrid:
@@ -80,7 +86,7 @@ def read_text(
     ----------
     path : str or path-like
         The file.
-    corner_cutting : bool, optional
+    corner_cutting : bool or "one side", optional
         Whether a diagonal step may touch an occupied cell. If not given, the header decides, else False.
     resolution : float, optional
         Side of a cell in metres. If not given, the header decides, else 1.
@@ -106,6 +112,7 @@ def read_text(
         "corner_cutting": header.corner_cutting if corner_cutting is None else corner_cutting,
         "resolution": header.resolution if resolution is None else resolution,
         "origin": header.origin if origin is None else origin,
+        "moves": header.moves,
     }
     grid = make_grid(path, occupied, header.name, **{key: value for key, value in options.items() if value is not None})
     for role, cell in (("start", header.start), ("goal", header.goal)):
@@ -146,6 +153,16 @@ class TextFormat(MapFormat):
     def query(self, path):
         header = read_text_header(path)
         return Query(header.start, header.goal, header.radius or 0.0)
+
+    def write(self, path, grid):
+        lines = {
+            "name": " ".join(visible(grid.name).split()),
+            "resolution": repr(grid.resolution),
+            "origin": " ".join(map(repr, grid.origin)),
+            "corner_cutting": str(grid.corner_cutting).lower(),
+        }
+        head = "".join(f"{key}: {value}\n" for key, value in lines.items() if value)
+        write_whole(path, head.encode() + b"\n" + rows_of(grid.occupied, FREE[0], OCCUPIED[0]))
 
 
 def _split(path) -> tuple[TextHeader, bytes, int, dict[str, int]]:
@@ -213,10 +230,17 @@ def _cell(value: str) -> Cell:
     return x, y
 
 
-def _bool(value: str) -> bool:
-    if value not in ("true", "false"):
+def _corner_cutting(value: str) -> CornerCutting:
+    known: dict[str, CornerCutting] = {"true": True, "false": False, ONE_SIDE: "one side"}
+    if value not in known:
         raise ValueError
-    return value == "true"
+    return known[value]
+
+
+def _moves(value: str) -> int:
+    if int(value) not in MOVES:
+        raise ValueError
+    return int(value)
 
 
 _HEADER = {
@@ -224,7 +248,8 @@ _HEADER = {
     "title": (_text, "a line of text"),
     "resolution": (_resolution, "a positive number of metres per cell"),
     "origin": (_pose, "two or three numbers x y yaw in metres and radians"),
-    "corner_cutting": (_bool, "true or false"),
+    "corner_cutting": (_corner_cutting, f"true, false or {ONE_SIDE}"),
+    "moves": (_moves, " or ".join(map(str, MOVES))),
     "start": (_cell, "two whole numbers x y"),
     "goal": (_cell, "two whole numbers x y"),
     "radius": (_metres, "a number of metres, zero or more"),

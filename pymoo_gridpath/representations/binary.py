@@ -24,7 +24,8 @@ class BinaryRepresentation(MonotoneRepresentation):
     The climb in the start column is upwards, as in the paper. Where the start is not in the bottom row, values that
     would pass the top edge count on from the bottom row, so that every row has a code; values of n_rows and more leave
     the grid. A step into the last column that would leave the grid is horizontal. Directions are taken as coded: where
-    the grid forbids to cut corners, a diagonal that does so makes the path illegal.
+    the grid forbids to cut corners, a diagonal that does so makes the path illegal. On a grid without diagonal steps all are
+    horizontal, and the climb is what leads to the same row.
 
     See `MonotoneRepresentation` for the parameters.
 
@@ -83,6 +84,8 @@ class BinaryRepresentation(MonotoneRepresentation):
         step = _step(direction)
         target = leave[:, :-1] + step
         step[(target < 0) | (target >= frame.n_rows)] = 0
+        if not frame.grid.neighbourhood.diagonal:
+            step[:] = 0
         enter = np.empty_like(leave)
         enter[:, 0] = frame.start_row
         np.add(leave[:, :-1], step, out=enter[:, 1:])

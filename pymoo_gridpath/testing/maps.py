@@ -138,7 +138,7 @@ class MapFormatSuite:
         for name in ("corner_cutting", "resolution", "origin"):
             if name in self.format().options:
                 with pytest.raises(GridPathError):
-                    load_map(path, **{name: "nonsense"})
+                    load_map(path, **dict[str, Any]({name: "nonsense"}))
 
     def test_garbage_is_refused(self, tmp_path):
         for k, content in enumerate(GARBAGE):

@@ -21,6 +21,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.representations import Representation, make_representation
+from pymoo_gridpath.study.planning.canonical import settled_steps, steps_of
 from pymoo_gridpath.study.planning.moving import build_moving, fresh
 from pymoo_gridpath.study.specification import made, own
 from pymoo_gridpath.study.specification.kinds import ALGORITHM, OBJECTIVE, REPRESENTATION
@@ -38,12 +39,13 @@ def pack_grid(grid: OccupancyGrid) -> tuple[dict[str, Any], bytes]:
     Returns
     -------
     dict
-        ``digest`` (see `OccupancyGrid.digest`), ``width``, ``height`` and ``corner_cutting``; names, poses and the resolution
-        change no result, since measures are in cells.
+        ``digest`` (see `OccupancyGrid.digest`), ``width``, ``height``, ``corner_cutting``, and ``moves`` if these are not 8;
+        names, poses and the resolution change no result, since measures are in cells.
     bytes
         The cells, eight a byte, compressed.
     """
-    spec = {"digest": grid.digest, "width": grid.width, "height": grid.height, "corner_cutting": grid.corner_cutting}
+    spec = {"digest": grid.digest, "width": grid.width, "height": grid.height}
+    spec |= settled_steps(grid.corner_cutting, grid.moves)
     return spec, zlib.compress(np.packbits(grid.occupied).tobytes())
 
 
@@ -64,14 +66,13 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
     """
     if "random" in spec:
         family = spec["random"]
-        grid = random_dense_grid(family["size"], family["p0"], family["seed"])
-        return grid if family["corner_cutting"] else grid.replace(corner_cutting=False)
+        return random_dense_grid(family["size"], family["p0"], family["seed"]).replace(**steps_of(spec))
     if cells is None:
         raise GridPathError("the cells of the map are missing, expected those that were planned with")
     packed = np.frombuffer(zlib.decompress(cells), dtype=np.uint8)
     shape = spec["height"], spec["width"]
     occupied = np.unpackbits(packed, count=shape[0] * shape[1]).reshape(shape).astype(bool)
-    grid = OccupancyGrid(occupied, corner_cutting=spec["corner_cutting"])
+    grid = OccupancyGrid(occupied, **steps_of(spec))
     if grid.digest != spec["digest"]:
         raise GridPathError("the cells of the map are not those that were planned with")
     return grid

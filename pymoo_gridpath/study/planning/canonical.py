@@ -10,11 +10,15 @@ from typing import Any
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.paper import REPRESENTATION, paper_treatment
+from pymoo_gridpath.grid import CornerCutting
 from pymoo_gridpath.operators.sets import MEMBERS, default_set, paper_classes, path_classes
 from pymoo_gridpath.problems.grid_path import default_penalty
 from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.specification.kinds import is_monotone, is_of_paper, objective_name, of_package
 from pymoo_gridpath.study.specification.operators import default_operator, planner_of
+
+# How many neighbours a cell has where nothing is said: in all that was planned before it could be.
+MOVES_UNLESS_SAID = 8
 
 
 def settle(problem: Mapping[str, Any]) -> dict[str, Any]:
@@ -28,6 +32,17 @@ def settle(problem: Mapping[str, Any]) -> dict[str, Any]:
 def n_cells(grid: Mapping[str, Any]) -> int:
     """Return how many cells a grid in canonical form has."""
     return grid["random"]["size"] ** 2 if "random" in grid else grid["width"] * grid["height"]
+
+
+def steps_of(grid: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments by which a grid in canonical form has its steps."""
+    content = grid.get("random", grid)
+    return {"corner_cutting": content["corner_cutting"], "moves": content.get("moves", MOVES_UNLESS_SAID)}
+
+
+def settled_steps(corner_cutting: CornerCutting, moves: int) -> dict[str, Any]:
+    """Return what the canonical form of a grid says of its steps: of their number, only if it is another than usual."""
+    return {"corner_cutting": corner_cutting} | ({} if moves == MOVES_UNLESS_SAID else {"moves": moves})
 
 
 def resolve(

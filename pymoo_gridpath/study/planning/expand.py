@@ -12,6 +12,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import CAPABILITIES, find_algorithm
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.algorithms.paper import POP_SIZE
+from pymoo_gridpath.neighbourhood import neighbourhood_of
 from pymoo_gridpath.planners import reference_planner
 from pymoo_gridpath.problems import MovingObstaclesProblem
 from pymoo_gridpath.study.planning import canonical
@@ -159,7 +160,7 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
 
 def _check_advancing(study: Study, where, members: list[PlannedProblem], content: Mapping[str, Any]) -> None:
     """Refuse queries that no path can solve which advances column by column, as far as that can be told in little time."""
-    if "random" in content["grid"] and content["grid"]["random"]["corner_cutting"]:
+    if "random" in content["grid"] and not neighbourhood_of(**canonical.steps_of(content["grid"])).restricts:
         return
     grid = build_grid(members[0].spec["grid"], members[0].grid)
     most = max(1, _CHECKED_CELLS // (grid.occupied.size + _CELLS_A_CHECK))

@@ -76,9 +76,10 @@ def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyG
         family = spec.random
         goal = (family.size - 1, family.size - 1)
         for seed in family.seeds:
-            content = {"size": family.size, "p0": family.p0, "seed": seed, "corner_cutting": family.corner_cutting}
+            content = {"size": family.size, "p0": family.p0, "seed": seed}
+            content |= canonical.settled_steps(family.corner_cutting, family.moves)
             grid = {"random": content}
-            if neighbourhood_of(8, family.corner_cutting).restricts:
+            if neighbourhood_of(family.moves, family.corner_cutting).restricts:
                 # Elsewhere there is always a path.
                 refuse(study, (*place_of(k), "random"), f"seed {seed}: ", build_grid(grid).check_query, (0, 0), goal)
             yield _Item(str(seed), grid, None, (0, 0), goal)
@@ -106,7 +107,7 @@ def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[Occupan
     else:
         path = _map_path(study, spec)
         where = (*place_of(k), "map" if spec.map is not None else "scen")
-        options = {key: getattr(spec, key) for key in ("resolution", "unknown", "threshold", "corner_cutting")}
+        options = {key: getattr(spec, key) for key in ("resolution", "unknown", "threshold", "corner_cutting", "moves")}
         key = (path, *options.values())
         if key not in maps:
             maps[key] = refuse(study, where, "", load_map, path, **options)
@@ -156,10 +157,9 @@ def _moving(study: Study, k: int, spec: ProblemSpec, item: _Item, content: dict[
 
 def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
     """Return the canonical form of a problem, but for obstacles that move."""
-    corner_cutting = item.grid.get("random", item.grid)["corner_cutting"]
     default: Any = REPRESENTATION
     if spec.moving is None:
-        default = default_representation(corner_cutting, spec.axis)  # pyright: ignore[reportArgumentType]
+        default = default_representation(canonical.steps_of(item.grid)["corner_cutting"], spec.axis)  # pyright: ignore[reportArgumentType]
     return canonical.settle(
         {
             "grid": item.grid,

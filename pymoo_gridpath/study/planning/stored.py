@@ -13,6 +13,7 @@ from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.planners import Planner, reference_planner
 from pymoo_gridpath.registry import SLOTS, key_of
 from pymoo_gridpath.representations import Representation
+from pymoo_gridpath.study.planning.canonical import steps_of
 from pymoo_gridpath.study.specification import moving, own, values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec
@@ -184,13 +185,14 @@ def _check_grid(value: Any, where: Where) -> tuple[int, int]:
     if isinstance(value, Mapping) and "random" in value:
         place = (*where, "random")
         grid = _table(value, ("random",), where, "the grid")
-        family = _table(grid["random"], ("size", "p0", "seed", "corner_cutting"), place, "the random grid")
+        family = _table(grid["random"], ("size", "p0", "seed", "corner_cutting"), place, "the random grid", ("moves",))
         values.whole(family["seed"], (*place, "seed"), 0, values.MAX_SEED)
-        _at(place, make_spec, RandomFamily, {key: family[key] for key in ("size", "p0", "corner_cutting")}, ())
+        _at(place, make_spec, RandomFamily, {key: value for key, value in family.items() if key != "seed"}, ())
         return family["size"], family["size"]
-    grid = _table(value, ("digest", "width", "height", "corner_cutting"), where, "the grid")
+    grid = _table(value, ("digest", "width", "height", "corner_cutting"), where, "the grid", ("moves",))
     _check_texts(grid, ("digest",), where)
-    values.flag(grid["corner_cutting"], (*where, "corner_cutting"))
+    values.corner_cutting(grid["corner_cutting"], (*where, "corner_cutting"))
+    values.moves(steps_of(grid)["moves"], (*where, "moves"))
     return values.whole(grid["width"], (*where, "width"), 1), values.whole(grid["height"], (*where, "height"), 1)
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from pymoo.core.callback import Callback
 
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem, build_termination
-from pymoo_gridpath.study.planning.canonical import n_cells
+from pymoo_gridpath.study.planning.canonical import n_cells, steps_of
 from pymoo_gridpath.study.planning.moving import clock_of, tried
 
 # Of a trial, where the algorithm takes so few.
@@ -47,10 +47,9 @@ class Pair(NamedTuple):
     @property
     def kind(self) -> str:
         """The same for pairs of which one trial is enough: what operators and algorithms tell apart."""
-        grid = self.problem["grid"]
         of_problem = [self.problem["representation"], self.problem["obstacles"], len(self.problem["objectives"])]
         of_problem.append("moving" in self.problem)
-        return json.dumps([*of_problem, grid.get("random", grid)["corner_cutting"], self.algorithm], sort_keys=True)
+        return json.dumps([*of_problem, steps_of(self.problem["grid"]), self.algorithm], sort_keys=True)
 
 
 def one_of_each_kind(pairs: list[Pair]) -> list[Pair]:
@@ -76,9 +75,9 @@ def _small(pair: Pair) -> Pair:
     problem, algorithm, grid = dict(pair.problem), dict(pair.algorithm), pair.grid
     stand_in = None
     if n_cells(problem["grid"]) > _MOST_CELLS:
-        kept = problem["grid"].get("random", problem["grid"])["corner_cutting"]
+        kept = steps_of(problem["grid"])
         last = _STAND_IN["size"] - 1
-        grid, stand_in = None, {**_STAND_IN, "corner_cutting": kept}
+        grid, stand_in = None, _STAND_IN | kept
         problem |= {"grid": {"random": stand_in}, "start": [0, 0], "goal": [last, last]}
     if "moving" in problem:
         problem = tried(problem, stand_in)

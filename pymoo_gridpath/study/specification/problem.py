@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, StudyError
-from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps import MAX_CELLS
 from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.problems import OBSTACLES
@@ -19,6 +19,8 @@ from pymoo_gridpath.study.specification.kinds import OBJECTIVE
 from pymoo_gridpath.study.specification.moving import MovingObstacles, check_moving
 
 UNKNOWN = ("free", "occupied")
+# What says which steps a grid has.
+_STEPS = ("corner_cutting", "moves")
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,10 @@ class RandomFamily:
         Probability of an obstacle in a cell off the path, 0 to 1.
     seeds : int, sequence of int or mapping
         One grid each: how many (from 1 on), a list, or ``{"first": 100, "count": 11}``.
-    corner_cutting : bool, default True
-        As in the paper. Where corners may not be cut, a grid may turn out to have no path, which `plan_study` refuses.
+    corner_cutting : bool or "one side", default True
+        As in the paper. Elsewhere a grid may turn out to have no path, which `plan_study` refuses.
+    moves : {8, 4}, default 8
+        How many neighbours a cell has.
     """
 
     owner: ClassVar[str] = "a random family"
@@ -42,7 +46,8 @@ class RandomFamily:
     size: int
     p0: float
     seeds: Any = 1
-    corner_cutting: bool = True
+    corner_cutting: CornerCutting = True
+    moves: int = 8
 
     def __post_init__(self):
         set_fields(
@@ -50,7 +55,8 @@ class RandomFamily:
             size=values.whole(self.size, ("size",), 2, int(MAX_CELLS**0.5)),
             p0=values.real(self.p0, ("p0",), 0.0, 1.0),
             seeds=values.seeds(self.seeds, ("seeds",)),
-            corner_cutting=values.flag(self.corner_cutting, ("corner_cutting",)),
+            corner_cutting=values.corner_cutting(self.corner_cutting, ("corner_cutting",)),
+            moves=values.moves(self.moves, ("moves",)),
         )
 
 
@@ -92,7 +98,7 @@ class ProblemSpec:
         Cells (x, y), y up; by default those that the map names.
     radius : float, default 0
         Robot radius in metres, by which obstacles are grown.
-    resolution, unknown, threshold, corner_cutting : optional
+    resolution, unknown, threshold, corner_cutting, moves : optional
         How the map is read, see `pymoo_gridpath.maps.load_map`.
     moving : MovingObstacles or mapping, optional
         Obstacles that move while the search goes on; paths are then coded as "cells", and obstacles are a penalty.
@@ -121,7 +127,8 @@ class ProblemSpec:
     resolution: float | None = None
     unknown: str | None = None
     threshold: float | None = None
-    corner_cutting: bool | None = None
+    corner_cutting: CornerCutting | None = None
+    moves: int | None = None
     moving: Any = None
     objectives: Any = ("length", "vulnerability")
     representation: Any = None
@@ -138,7 +145,8 @@ class ProblemSpec:
         set_given(self, "resolution", check=lambda value, where: values.real(value, where, open_below=True))
         set_given(self, "unknown", check=lambda value, where: values.choice(value, UNKNOWN, where))
         set_given(self, "threshold", check=lambda value, where: values.real(value, where, 0.0, 1.0))
-        set_given(self, "corner_cutting", check=values.flag)
+        set_given(self, "corner_cutting", check=values.corner_cutting)
+        set_given(self, "moves", check=values.moves)
         set_fields(self, objectives=_objectives(self.objectives))
         set_fields(self, obstacles=values.choice(self.obstacles, OBSTACLES, ("obstacles",)))
         set_fields(self, axis=values.choice(self.axis, AXES, ("axis",)))
@@ -161,13 +169,13 @@ class ProblemSpec:
         if self.random is not None:
             set_fields(self, random=make_spec(RandomFamily, self.random, ("random",)))
         misplaced = {
-            "random": ("start", "goal", "radius", "resolution", "unknown", "threshold", "corner_cutting", "queries"),
-            "grid": ("resolution", "unknown", "threshold", "corner_cutting"),
+            "random": ("start", "goal", "radius", "resolution", "unknown", "threshold", *_STEPS, "queries"),
+            "grid": ("resolution", "unknown", "threshold", *_STEPS),
         }
         for source, keys in misplaced.items():
             for key in keys:
                 if getattr(self, source) is not None and getattr(self, key) not in (None, 0.0):
-                    inside = "; write it into the table random" if key == "corner_cutting" and source == "random" else ""
+                    inside = "; write it into the table random" if key in _STEPS and source == "random" else ""
                     raise StudyError(f"{key} is for maps from a file, not for a problem with {source}{inside}", (key,))
         if self.scen is not None and (self.start or self.goal):
             key = "start" if self.start else "goal"

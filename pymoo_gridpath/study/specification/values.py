@@ -9,7 +9,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import GridPathError, StudyError, nearest
+from pymoo_gridpath.errors import GridError, GridPathError, StudyError, nearest
+from pymoo_gridpath.grid import CornerCutting
+from pymoo_gridpath.grid.arguments import as_corner_cutting, as_moves
 
 T = TypeVar("T")
 
@@ -80,6 +82,23 @@ def flag(value: object, where: Where) -> bool:
     if not isinstance(found, bool):
         raise StudyError(f"{key_of(where)} is {show(value)}, expected true or false", where)
     return found
+
+
+def corner_cutting(value: object, where: Where) -> CornerCutting:
+    """Return how corners may be cut."""
+    return _of_grid(as_corner_cutting, value, where)
+
+
+def moves(value: object, where: Where) -> int:
+    """Return how many neighbours a cell has."""
+    return _of_grid(as_moves, value, where)
+
+
+def _of_grid(check, value: object, where: Where):
+    try:
+        return check(_plain(value))
+    except GridError as error:
+        raise StudyError(str(error), where) from None
 
 
 def choice(value: object, known: Iterable[str], where: Where) -> str:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath.errors import counted
-from pymoo_gridpath.study.planning.canonical import resolve
+from pymoo_gridpath.neighbourhood import neighbourhood_of, steps_in_words
+from pymoo_gridpath.study.planning.canonical import resolve, steps_of
 from pymoo_gridpath.study.planning.plan import PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.page.blocks import Block, Fold, Heading, Listing, Text
 from pymoo_gridpath.study.report.references import kind_of
@@ -207,12 +208,12 @@ def _grids(problems: Sequence[PlannedProblem]) -> str:
 
 def _one_grid(problem: PlannedProblem) -> str:
     grid = problem.spec["grid"]
+    steps = steps_of(grid)
+    rule = "" if not neighbourhood_of(**steps).restricts else f", {steps_in_words(**steps)}"
     if "random" in grid:
         family = grid["random"]
         size, p0 = family["size"], family["p0"]
-        rule = "" if family["corner_cutting"] else ", no corner cutting"
         return f"random, {size} x {size} cells, p0 = {p0:g}{rule}, seed {family['seed']}"
-    rule = "" if grid["corner_cutting"] else ", no corner cutting"
     return f"{problem.source or 'map'}, {grid['width']} x {grid['height']} cells{rule}, digest {grid['digest'][:8]}"
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pymoo_gridpath.study.planning.canonical import steps_of
 from pymoo_gridpath.study.planning.plan import PlannedProblem
 from pymoo_gridpath.study.report.references import gist, kind_of
 from pymoo_gridpath.study.report.results import Results
@@ -79,7 +80,7 @@ def _runs(results: Results, measures: list[str]) -> tuple[list[str], Iterator[li
 
 def _problems(results: Results, times: bool) -> tuple[list[str], Iterator[list]]:
     """Return header and rows of the problems and the fronts that their runs are measured against."""
-    grid = ["width", "height", "corner_cutting", "p0", "grid_seed", "map", "map_digest"]
+    grid = ["width", "height", "corner_cutting", "moves", "p0", "grid_seed", "map", "map_digest"]
     given = ["representation", "axis", "obstacles", "penalty", "potential_limit"]
     header = ["group", "problem", *grid, "start", "goal", "objectives", *given]
     header += ["reference", "reference_points", "reason", "exceeded"]
@@ -160,12 +161,14 @@ def _tests(results: Results, families: Sequence[Family]) -> tuple[list[str], Ite
 
 
 def _grid(problem: PlannedProblem) -> list:
-    """Return size, rule and origin of a grid; of random ones there is no map, of maps no probability and seed."""
+    """Return size, steps and origin of a grid; of random ones there is no map, of maps no probability and seed."""
     grid = problem.spec["grid"]
+    corners, moves = steps_of(grid).values()
+    steps = [corners if isinstance(corners, str) else _truth(corners), moves]
     if "random" in grid:
         family = grid["random"]
-        return [family["size"], family["size"], _truth(family["corner_cutting"]), family["p0"], family["seed"], None, None]
-    return [grid["width"], grid["height"], _truth(grid["corner_cutting"]), None, None, problem.source, grid["digest"]]
+        return [family["size"], family["size"], *steps, family["p0"], family["seed"], None, None]
+    return [grid["width"], grid["height"], *steps, None, None, problem.source, grid["digest"]]
 
 
 def _truth(value: bool) -> str:
