@@ -41,6 +41,21 @@ def _grids(w: World) -> dict[str, Call]:
         "OccupancyGrid.check_query": (grid.check_query, w.query),
         "OccupancyGrid.contains": (grid.contains, {"cell": cell}),
         "OccupancyGrid.crop": (grid.crop, {"box": grid.whole}),
+        "OccupancyGrid.downsample": (grid.downsample, {"factor": 2}),
+        "OccupancyGrid.from_occupancy": (
+            OccupancyGrid.from_occupancy,
+            {
+                "occupancy": np.array([0, 100, -1, 20, 80, 50]),
+                "width": 3,
+                **pose,
+                "occupied_from": 60.0,
+                "free_up_to": 30.0,
+                "unknown": "free",
+                "corner_cutting": True,
+                "name": "hall",
+                "moves": 4,
+            },
+        ),
         "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
         "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
         "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
@@ -60,6 +75,7 @@ def _grids(w: World) -> dict[str, Call]:
 def _maps(w: World) -> dict[str, Call]:
     pose = {"resolution": 0.5, "origin": (1.0, 2.0)}
     return {
+        "save_map": (maps.save_map, {"grid": grid, "path": w.folder / "saved.yaml"}),
         "load_map": (maps.load_map, {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose}),
         "load_shipped": (maps.load_shipped, {"name": "office", "corner_cutting": True}),
         "format_of": (maps.format_of, {"path": w.ros_map}),

@@ -20,6 +20,7 @@ from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells
 from pymoo_gridpath.grid.box import Box
 from pymoo_gridpath.grid.cells import Cells
 from pymoo_gridpath.grid.inflation import disc_of, grown_by
+from pymoo_gridpath.grid.occupancy_values import blocks_of, cells_of_occupancy, decimal_of
 from pymoo_gridpath.neighbourhood import steps_in_words
 
 # Numbers of cells that a float holds without gaps, with one bit to spare.
@@ -91,6 +92,60 @@ class OccupancyGrid(Cells):
         if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in self._origin)):
             raise GridError(f"resolution {resolution} and origin {origin!r} put the map beyond what numbers can hold")
         self._name = checks.text("name", name, GridError)
+
+    @classmethod
+    def from_occupancy(
+        cls,
+        occupancy: ArrayLike,
+        width: int | None = None,
+        resolution: float = 1.0,
+        origin: Sequence[float] = (0.0, 0.0, 0.0),
+        occupied_from: float = 65,
+        free_up_to: float = 25,
+        unknown: str = "occupied",
+        corner_cutting: CornerCutting = False,
+        name: str = "grid",
+        moves: int = 8,
+    ) -> OccupancyGrid:
+        """Return the grid of occupancies in percent, such as ``data`` of the ROS message nav_msgs/OccupancyGrid.
+
+        Parameters
+        ----------
+        occupancy : array_like of int, shape (height, width), or flat, shape (height * width,)
+            -1 where nothing is known, else 0 (free) to 100 (occupied) percent. Row 0 is the bottom row, as in the message.
+        width : int, optional
+            Columns, ``info.width``, needed where the array is flat.
+        resolution : float, default 1.0
+            ``info.resolution``. The message has it in single precision; 0.05000000074505806 is taken for 0.05.
+        origin : (float, float) or (float, float, float), default (0, 0, 0)
+            Pose of the bottom-left corner of cell (0, 0), x and y in metres and yaw in radians; of ``info.origin`` the yaw is
+            ``2 * atan2(orientation.z, orientation.w)``.
+        occupied_from, free_up_to : float, default 65 and 25
+            A cell of at least, and of at most, so many percent is occupied, and free; between them it is unknown.
+        unknown : {"occupied", "free"}, default "occupied"
+            What unknown cells are.
+        corner_cutting, name, moves
+            As of `OccupancyGrid`.
+
+        Returns
+        -------
+        OccupancyGrid
+
+        Raises
+        ------
+        GridError
+            If a value is no such number, as where a costmap's 0 to 255 are given, or booleans; or if an argument is out of its
+            range.
+
+        Examples
+        --------
+        >>> grid = OccupancyGrid.from_occupancy([0, 100, -1, 0, 20, 80], width=3, resolution=0.05)
+        >>> grid.occupied.astype(int).tolist(), grid.unknown.astype(int).tolist()
+        ([[0, 1, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 0]])
+        """
+        occupied, unseen = cells_of_occupancy(occupancy, width, occupied_from, free_up_to, unknown)
+        metres = checks.number("resolution", resolution, expected="a positive number of metres per cell", error=GridError)
+        return cls(occupied, decimal_of(metres), origin, corner_cutting, name, unseen, moves)
 
     # -- what it is ---------------------------------------------------------------------------------------------------
 
@@ -334,6 +389,23 @@ class OccupancyGrid(Cells):
         return self.replace(
             occupied=self._occupied[box.slices], origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw)
         )
+
+    def downsample(self, factor: int) -> OccupancyGrid:
+        """Return a grid of larger cells, each of ``factor`` x ``factor`` of these, occupied where any of them is.
+
+        Rows and columns at the top and the right that fill no larger cell make one that is occupied, since what lies beyond
+        the edge is not known.
+
+        Raises
+        ------
+        GridError
+            If the factor is no whole number of at least 1, or larger than the grid.
+        """
+        most = max(self.shape)
+        factor = checks.whole("factor", factor, 1, most, expected=f"a whole number of cells from 1 to {most}", error=GridError)
+        unknown = None if self._unknown is None else blocks_of(self._unknown, factor, False)
+        occupied = blocks_of(self._occupied, factor, True)
+        return self.replace(occupied=occupied, unknown=unknown, resolution=factor * self._resolution)
 
     def inflate(self, radius: float) -> OccupancyGrid:
         """Return a grid on which a disc of ``radius`` metres can be planned for as a point.

@@ -12,6 +12,7 @@ from pymoo_gridpath.maps.load import load_map
 from pymoo_gridpath.maps.movingai import ScenQuery, read_movingai, read_scen
 from pymoo_gridpath.maps.queries import query_of
 from pymoo_gridpath.maps.ros import read_ros
+from pymoo_gridpath.maps.save import save_map
 from pymoo_gridpath.maps.shipped import ShippedMap, load_shipped, shipped_maps
 from pymoo_gridpath.maps.text import TextHeader, read_text, read_text_header
 
@@ -37,5 +38,6 @@ __all__ = [
     "read_string",
     "read_text",
     "read_text_header",
+    "save_map",
     "shipped_maps",
 ]

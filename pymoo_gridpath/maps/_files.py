@@ -14,14 +14,13 @@ from numpy.typing import ArrayLike
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError, MapWarning
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid.occupancy_values import UNKNOWN_CHOICES
 
 MAX_CELLS = 100_000_000
 """The largest number of cells that a map may have."""
 
 MAX_LINE = 10_000
 """The largest number of bytes of a line of text that is not a row of cells."""
-
-UNKNOWN_CHOICES = ("occupied", "free")
 
 _BLANKS = b" \t\v\f"
 _IS_BLANK = np.isin(np.arange(256), list(_BLANKS))
@@ -164,6 +163,12 @@ def parse_rows(
     if bad < height:
         raise _bad_row(path, body, bad, first_line, width, codes, free, occupied)
     return grid
+
+
+def rows_of(occupied: np.ndarray, free_letter: str, occupied_letter: str) -> bytes:
+    """Return what `parse_rows` reads: a letter a cell, the top row first, each row with a line end."""
+    letters = np.where(occupied[::-1], np.uint8(ord(occupied_letter)), np.uint8(ord(free_letter)))
+    return np.pad(letters, ((0, 0), (0, 1)), constant_values=ord("\n")).tobytes()
 
 
 def _blank_within(body: bytes) -> int | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Sequence
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._files import BLOCK, check_size, make_grid, require_file
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
@@ -65,6 +67,11 @@ class NumpyFormat(MapFormat):
 
     def matches(self, head, path):
         return head.startswith(MAGIC)
+
+    def write(self, path, grid):
+        data = io.BytesIO()
+        np.save(data, grid.occupied)
+        write_whole(path, data.getvalue())
 
 
 def _load(path) -> np.ndarray:

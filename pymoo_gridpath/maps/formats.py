@@ -101,6 +101,16 @@ class MapFormat(ABC):
         """Return what a file names as worth planning, or None; by default files name nothing."""
         return None
 
+    def write(self, path: Path, grid: OccupancyGrid) -> None:
+        """Write a grid so that `read` gives it back; by default that is refused.
+
+        Raises
+        ------
+        MapError
+            If the format cannot say what the grid is.
+        """
+        raise MapError(path, f"maps of the format {self.name!r} are read and not written")
+
     @property
     def options(self) -> tuple[str, ...]:
         """Names of the options that `read` takes."""
@@ -109,6 +119,22 @@ class MapFormat(ABC):
 
 #: Map formats by name, those of this package first.
 MAP_FORMATS: Registry[type[MapFormat]] = Registry("map format", "pymoo_gridpath.map_formats", MapFormat)
+
+
+def format_for(path: str | os.PathLike[str]) -> MapFormat:
+    """Return the format of a map file that is yet to be written, by its suffix.
+
+    Raises
+    ------
+    MapError
+        If no format has that suffix.
+    """
+    suffix = Path(path).suffix.lower()
+    formats = {ending: cls for cls in reversed(list(MAP_FORMATS.values())) for ending in cls.suffixes}
+    if suffix not in formats:
+        written = sorted(cls.suffixes[0] for cls in MAP_FORMATS.values() if cls.write is not MapFormat.write)
+        raise MapError(path, f"there is no map format of the suffix {suffix!r}, expected one of {', '.join(written)}")
+    return formats[suffix]()
 
 
 def format_of(path: str | os.PathLike[str]) -> MapFormat:

@@ -15,8 +15,9 @@ from pathlib import Path
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import Cell, CornerCutting, OccupancyGrid
-from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_text_bytes, short_line, shorten
+from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, read_text_bytes, rows_of, short_line, shorten
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
 # The benchmarks' own loader (``Map.cpp`` of HOG2) takes lower-case letters as their capitals, and any other character as
@@ -110,6 +111,12 @@ class MovingAIFormat(MapFormat):
 
     def matches(self, head, path):
         return head.removeprefix(b"\xef\xbb\xbf").split(maxsplit=1)[:1] in ([b"type"], [b"voxel"], [b"version"])
+
+    def write(self, path, grid):
+        if path.suffix.lower() != self.suffixes[0]:
+            raise MapError(path, "maps in three dimensions are not written, expected a file .map")
+        head = f"type octile\nheight {grid.height}\nwidth {grid.width}\nmap\n"
+        write_whole(path, head.encode() + rows_of(grid.occupied, PASSABLE[0], OCCUPIED[0]))
 
 
 def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -> list[ScenQuery]:

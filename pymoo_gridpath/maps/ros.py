@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from pymoo_gridpath.errors import counted
+from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._files import blocks, check_unknown, make_grid, warn
 from pymoo_gridpath.maps._ros_yaml import Keys
@@ -20,6 +22,8 @@ MODES = ("trinary", "scale", "raw")
 UNKNOWN = -1
 # What map savers write.
 SAVED_OCCUPIED, SAVED_UNKNOWN, SAVED_FREE = 0, 205, 254
+# The thresholds under which every reader, old or new, takes these for what they are.
+SAVED_OCCUPIED_THRESH, SAVED_FREE_THRESH = 0.65, 0.19
 # An occupancy in percent, which only the modes scale and raw have, is an obstacle from here on.
 OCCUPIED_PERCENT = 50
 
@@ -106,6 +110,26 @@ class RosFormat(MapFormat):
     def matches(self, head, path):
         # An image may hold such a line as a comment.
         return b"\0" not in head and re.search(rb"^image[ \t]*:", head, re.MULTILINE) is not None
+
+    def write(self, path, grid):
+        image = path.with_suffix(".pgm")
+        grey = np.where(grid.occupied[::-1], np.uint8(SAVED_OCCUPIED), np.uint8(SAVED_FREE))
+        if grid.unknown is not None:
+            grey[grid.unknown[::-1]] = SAVED_UNKNOWN
+        # JSON's numbers and texts are those of YAML, but for exponents: those want a point there.
+        number = ", ".join(re.sub(r"^(-?\d+)(?=e)", r"\1.0", repr(float(value))) for value in (grid.resolution, *grid.origin))
+        resolution, _, origin = number.partition(", ")
+        write_whole(image, f"P5\n{grid.width} {grid.height}\n255\n".encode() + grey.tobytes())
+        lines = (
+            f"image: {json.dumps(image.name)}",
+            "mode: trinary",
+            f"resolution: {resolution}",
+            f"origin: [{origin}]",
+            "negate: 0",
+            f"occupied_thresh: {SAVED_OCCUPIED_THRESH}",
+            f"free_thresh: {SAVED_FREE_THRESH}",
+        )
+        write_whole(path, "".join(f"{line}\n" for line in lines).encode())
 
 
 @dataclass(frozen=True)

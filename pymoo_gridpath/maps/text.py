@@ -18,6 +18,9 @@ A file is, in UTF-8,
 
 2. the rows, the *top* row first, all of one width: ``.`` and ``0`` are free, ``#``, ``@``, ``X`` and ``1`` are occupied.
 
+Rows may also be those of a matrix of the numbers 0 and 1, separated by blanks, commas or semicolons, as `numpy.savetxt` writes
+it; here, too, the top row comes first: ``numpy.savetxt(path, grid.occupied[::-1])``.
+
 The numbers of a header value are separated by spaces or commas. Blank lines before the rows and after them are ignored. There
 are no comments, because ``#`` is an obstacle.
 """
@@ -30,10 +33,23 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from pymoo_gridpath.errors import MapError, visible
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import Cell, CornerCutting, OccupancyGrid
-from pymoo_gridpath.maps._files import check_size, make_grid, parse_rows, plain, read_text_bytes, short_line, shorten
+from pymoo_gridpath.maps._files import (
+    MAX_LINE,
+    check_size,
+    make_grid,
+    parse_rows,
+    plain,
+    read_text_bytes,
+    rows_of,
+    short_line,
+    shorten,
+)
+from pymoo_gridpath.maps._matrix import is_matrix, parse_matrix
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat, Query
 from pymoo_gridpath.neighbourhood import MOVES, ONE_SIDE
 
@@ -104,10 +120,7 @@ def read_text(
     """
     header, data, start, lines = _split(path)
     first = data.count(b"\n", 0, start) + 1
-    end = data.find(b"\n", start)
-    size = len(data[start : end if end >= 0 else len(data)].rstrip()), data.count(b"\n", start) + 1
-    check_size(path, *size, first)
-    occupied = parse_rows(path, data[start:], first, size, FREE, OCCUPIED)
+    occupied = _cells(path, data, start, first)
     options = {
         "corner_cutting": header.corner_cutting if corner_cutting is None else corner_cutting,
         "resolution": header.resolution if resolution is None else resolution,
@@ -160,9 +173,19 @@ class TextFormat(MapFormat):
             "resolution": repr(grid.resolution),
             "origin": " ".join(map(repr, grid.origin)),
             "corner_cutting": str(grid.corner_cutting).lower(),
+            "moves": "" if grid.moves == 8 else str(grid.moves),
         }
         head = "".join(f"{key}: {value}\n" for key, value in lines.items() if value)
         write_whole(path, head.encode() + b"\n" + rows_of(grid.occupied, FREE[0], OCCUPIED[0]))
+
+
+def _cells(path, data: bytes, start: int, first: int) -> np.ndarray:
+    if is_matrix(data[start : start + MAX_LINE]):
+        return parse_matrix(path, data[start:], first)
+    end = data.find(b"\n", start)
+    size = len(data[start : end if end >= 0 else len(data)].rstrip()), data.count(b"\n", start) + 1
+    check_size(path, *size, first)
+    return parse_rows(path, data[start:], first, size, FREE, OCCUPIED)
 
 
 def _split(path) -> tuple[TextHeader, bytes, int, dict[str, int]]:
