@@ -47,7 +47,8 @@ def _grids(w: World) -> dict[str, Call]:
             {
                 "occupancy": np.array([0, 100, -1, 20, 80, 50]),
                 "width": 3,
-                **pose,
+                "resolution": 0.5,
+                "origin": (1.0, 2.0),
                 "occupied_from": 60.0,
                 "free_up_to": 30.0,
                 "unknown": "free",
@@ -75,7 +76,7 @@ def _grids(w: World) -> dict[str, Call]:
 def _maps(w: World) -> dict[str, Call]:
     pose = {"resolution": 0.5, "origin": (1.0, 2.0)}
     return {
-        "save_map": (maps.save_map, {"grid": grid, "path": w.folder / "saved.yaml"}),
+        "save_map": (maps.save_map, {"grid": w.grid, "path": w.folder / "saved.yaml"}),
         "load_map": (maps.load_map, {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose}),
         "load_shipped": (maps.load_shipped, {"name": "office", "corner_cutting": True}),
         "format_of": (maps.format_of, {"path": w.ros_map}),
