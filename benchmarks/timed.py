@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import Any
 
 import numpy as np
 from pymoo.optimize import minimize
 
 from pymoo_gridpath import OccupancyGrid, make_algorithm, path_operators
 from pymoo_gridpath.errors import UnreachableError
-from pymoo_gridpath.exact import exact_timed_front
+from pymoo_gridpath.exact import exact_front, exact_timed_front
 from pymoo_gridpath.operators import DiscretePolynomialMutation, RandomSampling, TwoPointCrossover
 from pymoo_gridpath.paths import Trajectories
 from pymoo_gridpath.problems import TimedPathProblem
@@ -83,14 +84,14 @@ def case(n_movers: int, number: int) -> tuple[TimedPathProblem, list]:
             problem = TimedPathProblem(OccupancyGrid(occupied), (0, 0), (SIZE - 1, SIZE - 1), ways, HORIZON)
         except UnreachableError:
             continue
-        if len(problem.pareto_front(max_seconds=None)) >= 10:
+        if len(exact_front(problem).F) >= 10:
             return problem, ways
 
 
 def searches(problems: list, n_seeds: int) -> None:
     print(f"hypervolume ratio of NSGA-II, 100 members, {N_GEN} generations, {n_seeds} seeds: least / median; illegal rows")
     for (n_movers, number), (problem, ways) in zip(CASES, problems, strict=True):
-        front = problem.pareto_front(max_seconds=None)
+        front = exact_front(problem).F
         aware = path_operators(problem)
         whole = {
             "sampling": RandomSampling(),
@@ -104,7 +105,7 @@ def searches(problems: list, n_seeds: int) -> None:
             ratios, illegal, seconds = [], 0, time.process_time()
             for seed in range(n_seeds):
                 algorithm = make_algorithm("NSGA2", problem, 100, operators=operators)
-                result = minimize(problem, algorithm, ("n_gen", N_GEN), seed=seed)
+                result: Any = minimize(problem, algorithm, ("n_gen", N_GEN), seed=seed)
                 ratios.append(hypervolume_ratio(result.F, front))
                 illegal += sum(not _is_legal(problem, ways, row) for row in result.X)
             seconds = (time.process_time() - seconds) / n_seeds
@@ -118,7 +119,7 @@ def _is_legal(problem: TimedPathProblem, ways: list, row: np.ndarray) -> bool:
 
 
 def evaluations(problem: TimedPathProblem) -> None:
-    X = np.tile(problem.pareto_set(max_seconds=None), (1000, 1))[:1000]
+    X = np.tile(exact_front(problem).X, (1000, 1))[:1000]
     best = np.inf
     for _ in range(20):
         begin = time.perf_counter()

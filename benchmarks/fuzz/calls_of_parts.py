@@ -134,7 +134,6 @@ def _problems(w: World) -> dict[str, Call]:
             },
         ),
         "TimedPathProblem.decode": (timed.decode, {"X": w.rows(timed)}),
-        "TimedPathProblem.evaluate": (timed.evaluate, {"X": w.rows(timed)}),
         "TimedPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
         "TimedPathProblem.restart": (timed.restart, {}),
         "TimedPathProblem.score": (timed.score, {"paths": timed.decode(w.rows(timed))}),
