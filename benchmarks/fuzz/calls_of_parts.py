@@ -109,6 +109,7 @@ def _problems(w: World) -> dict[str, Call]:
     road = [(x, 0) for x in range(8)] + [(7, y) for y in range(1, 6)]
     shortening = problems.ShorteningProblem(w.grid, road, n_points=2)
     moving = problems.MovingObstaclesProblem(w.grid, [[(-1, 0), (-2, 0)]], **w.query)
+    timed = w.timed
     own = {"grid": w.grid, **w.query, "representation": "integer", "objectives": ("length", "vulnerability"), "axis": "x"}
     return {
         "GridPathProblem": (
@@ -139,6 +140,22 @@ def _problems(w: World) -> dict[str, Call]:
         "MovingObstaclesProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
         "MovingObstaclesProblem.restart": (moving.restart, {}),
         "MovingObstaclesProblem.score": (moving.score, {"paths": moving.decode(w.rows(moving))}),
+        "TimedPathProblem": (
+            problems.TimedPathProblem,
+            {
+                "grid": w.grid,
+                **w.query,
+                "movers": [[(-1, 0), (-2, 0)]],
+                "horizon": 12,
+                "variance": 0.7,
+                "obstacles": "penalty",
+                "penalty": 3.0,
+            },
+        ),
+        "TimedPathProblem.decode": (timed.decode, {"X": w.rows(timed)}),
+        "TimedPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
+        "TimedPathProblem.restart": (timed.restart, {}),
+        "TimedPathProblem.score": (timed.score, {"paths": timed.decode(w.rows(timed))}),
         "ObstacleClock": (problems.ObstacleClock, {"told": True, "renew": True, "callback": Callback()}),
         "ShorteningProblem": (problems.ShorteningProblem, {"grid": w.grid, "road": road, "radius": 1.0, "n_points": 3}),
         "ShorteningProblem.cells": (shortening.cells, {"x": np.array([0.4, 0.6])}),
@@ -211,13 +228,15 @@ def _codings(w: World) -> dict[str, Call]:
         "default_representation": (representations.default_representation, {"corner_cutting": True, "axis": "x"}),
         "make_representation": (representations.make_representation, {"name": "mixed", "grid": w.grid, **w.query, "axis": "x"}),
     }
-    for coding in w.codings.values():
+    for coding in [*w.codings.values(), w.timed.representation]:
         cls = type(coding)
         X = w.rows(coding)
         own = {"axis": "x"} if isinstance(coding, representations.MonotoneRepresentation) else {}
         if cls is representations.CellSequence:
             own = {"max_cells": 20, "fields": [w.field], "spare": 2.0}
             X = coding.repair(X, w.random)
+        if cls is representations.TimedPaths:
+            own = {"movers": w.timed.movers, "horizon": 12}
         paths = coding.decode(X)
         found[cls.__name__] = (cls, {"grid": w.grid, **w.query, **own})
         arguments: dict[str, dict[str, Any]] = {

@@ -18,6 +18,7 @@ from pymoo_gridpath import (
     decision,
     exact,
     operators,
+    problems,
     representations,
     study,
 )
@@ -52,6 +53,10 @@ class World:
     @cached_property
     def problem(self) -> GridPathProblem:
         return GridPathProblem(self.grid, **self.query, representation="integer")
+
+    @cached_property
+    def timed(self) -> problems.TimedPathProblem:
+        return problems.TimedPathProblem(self.grid, **self.query, movers=[[(-1, 0), (-2, 0)]], horizon=12)
 
     @cached_property
     def limited(self) -> GridPathProblem:

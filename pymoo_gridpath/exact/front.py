@@ -10,6 +10,7 @@ import moocore
 import numpy as np
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
@@ -153,12 +154,12 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
 
 def _front_in_time(problem, budget: Budget | None) -> ExactResult:
     """Return the front of a problem of paths in time."""
-    coding = problem.representation
+    coding, begin = problem.representation, working_seconds()
     found = exact_timed_front(
         problem.grid, problem.start, problem.goal, coding.movers, coding.horizon, problem.variance, budget
     )
     X = coding.from_sequences(_sequences([path @ (1, problem.grid.width) for path in found.paths]))
-    return ExactResult(X, found.F, found.complete, found.message, found.n_labels, found.n_bytes, found.seconds)
+    return ExactResult(X, found.F, found.complete, found.message, found.n_labels, found.n_bytes, working_seconds() - begin)
 
 
 class _Part(NamedTuple):

@@ -42,8 +42,6 @@ class TimedFront(NamedTuple):
         How the search ended. Without a path within the horizon it gave up, which is not to say that there is none.
     n_labels, n_bytes : int
         The labels that were made, and the most bytes that they took at a time.
-    seconds : float
-        Time that the search took.
     """
 
     paths: list[np.ndarray]
@@ -52,7 +50,6 @@ class TimedFront(NamedTuple):
     message: str
     n_labels: int
     n_bytes: int
-    seconds: float
 
 
 def exact_timed_front(
@@ -136,7 +133,7 @@ def exact_timed_front(
     else:
         message = f"gave up at the horizon, tick {horizon}: no path arrives by then"
     complete = not meter.message and (len(F) > 0 or not len(labels[-1]))
-    return TimedFront([paths[k] for k in order], F[order], complete, message, len(whole), meter.n_bytes, meter.elapsed)
+    return TimedFront([paths[k] for k in order], F[order], complete, message, len(whole), meter.n_bytes)
 
 
 def _scored(path: np.ndarray, arrival: int, vulnerability: int) -> tuple[float, float, float]:

@@ -95,10 +95,10 @@ class TimedPathProblem(GridPathProblem):
     >>> import numpy as np
     >>> grid = OccupancyGrid(np.zeros((3, 5)))
     >>> problem = TimedPathProblem(grid, (0, 1), (4, 1), [[(4, 1), (3, 1), (2, 1), (1, 1), (0, 1)]], horizon=6)
-    >>> problem.pareto_front().round(2).tolist()
-    [[4.0, 4.83, 4.6], [4.0, 5.66, 3.34], [5.0, 6.83, 3.34]]
-    >>> problem.evaluate(np.array([[5, 6, 7, 8, 9, 9, 9]]), return_values_of=["interfering_cells"]).tolist()
-    [2]
+    >>> problem.pareto_front(max_seconds=60).round(2).tolist()
+    [[4.0, 4.83, 0.38], [5.0, 4.83, 0.27], [5.0, 5.41, 0.27]]
+    >>> problem.decode(np.array([[5, 6, 7, 8, 9, 9, 9]])).interfering_cells.tolist()
+    [1]
     """
 
     timed = True

@@ -13,7 +13,7 @@ from pymoo_gridpath.paths.trajectories import Trajectories
 from pymoo_gridpath.search.moves import Moves, ending_in, uncut
 
 # Cells times ticks: the tables of more would be of gigabytes.
-_MOST_STATES = 2**26
+_MOST_STATES = 2**25
 
 
 def steps_between(grid: OccupancyGrid, moves: Moves, before: np.ndarray, after: np.ndarray) -> np.ndarray:
