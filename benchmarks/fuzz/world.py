@@ -18,6 +18,7 @@ from pymoo_gridpath import (
     decision,
     exact,
     operators,
+    problems,
     representations,
     study,
 )
