@@ -298,7 +298,7 @@ def test_no_place_but_its_own_knows_a_planner():
         known -= {place for place in known if MODULES[place].name == "__init__.py"}
         # A report calls a front so, whoever found it: the whole truth, or the best of all runs.
         # And a map format goes by the same three letters as a planner.
-        assert known - {home, "study.report.results", "maps.ros"} == set()
+        assert known - {home, "study.report.references", "maps.ros"} == set()
         assert home in known
 
 

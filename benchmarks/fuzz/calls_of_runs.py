@@ -208,6 +208,18 @@ def _results(w: World) -> dict[str, Call]:
             plotting.plot_map,
             {"grid": w.grid, "potential": w.field, **w.query, "units": "m", "legend": True, "ax": None},
         ),
+        "animate_moving": (
+            plotting.animate_moving,
+            {
+                "run": w.moving_clock,
+                "file": w.folder / "moving.gif",
+                "reference": True,
+                "potential": False,
+                "units": "m",
+                "fps": 2.0,
+                "dpi": 10.0,
+            },
+        ),
         "plot_paths": (
             plotting.plot_paths,
             {
@@ -301,6 +313,8 @@ def _studies(w: World) -> dict[str, Call]:
             },
         ),
         "RandomFamily": (study.RandomFamily, {"size": 8, "p0": 0.2, "seeds": [1, 2], "corner_cutting": True}),
+        "MovingObstacles": (study.MovingObstacles, {"movers": [[(3, 3), (3, 4)]], "every": 2, "epochs": 3}),
+        "MovingObstacles.ways": (study.MovingObstacles(movers=[[(3, 3)]]).ways, {}),
         "QueryRange": (study.QueryRange, {"first": 0, "last": 5, "step": 2}),
         "AlgorithmSpec": (
             study.AlgorithmSpec,

@@ -26,6 +26,11 @@ BASE: dict[str, Any] = {
         },
         {"map": "paper16", "start": [0, 0], "goal": [15, 15], "radius": 0.0, "representation": "cells"},
         {"map": "room.txt", "objectives": ["length", "turn"], "obstacles": "constraint"},
+        {
+            "name": "moving",
+            "random": {"size": 6, "p0": 0.1},
+            "moving": {"movers": [[[3, 3], [3, 4]], [[1, 4]]], "every": 1, "epochs": 2},
+        },
     ],
     "algorithms": [
         {"name": "paper", "preset": "ahmed-deb-2013", "pop_size": 10},

@@ -75,6 +75,13 @@ class World:
         algorithm = algorithms.make_algorithm("NSGA2", self.problem, pop_size=12, operators=options)
         return minimize(self.problem, algorithm, ("n_gen", 3), seed=1, callback=convergence.ConvergenceRecorder())
 
+    @cached_property
+    def moving_clock(self) -> problems.ObstacleClock:
+        problem = problems.MovingObstaclesProblem(self.grid, [[(-1, 0)]], **self.query, taut=1)
+        clock = problems.ObstacleClock()
+        minimize(problem, algorithms.make_algorithm("NSGA2", problem, pop_size=6), ("n_gen", 1), seed=1, callback=clock)
+        return clock
+
     @property
     def recorder(self) -> convergence.ConvergenceRecorder:
         return cast(Any, self.result).algorithm.callback

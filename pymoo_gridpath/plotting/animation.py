@@ -103,8 +103,9 @@ class _Film:
     """The figure of an animation, drawn anew for each epoch."""
 
     def __init__(self, clock: ObstacleClock, fronts: list[np.ndarray | None], potential: bool, units: Units):
-        self.clock, self.fronts, self.potential, self.units = clock, fronts, potential, units
-        self.problem = clock.problem
+        self.clock, self.fronts, self.potential = clock, fronts, potential
+        self.units: Units = units
+        self.problem: MovingObstaclesProblem = clock.problem
         self.colors = LinearSegmentedColormap.from_list("front", _COLORS)
         grid = self.problem.grid
         wide = grid.width > 1.6 * grid.height
@@ -183,7 +184,12 @@ class _Film:
     def _draw_front(self, ax: Axes, frame: int) -> None:
         F, front = self.clock.F[frame], self.fronts[frame]
         plane = self.problem.n_obj == 2
-        ring = {"marker": "o", "linestyle": "none", "markerfacecolor": "none", "markeredgecolor": style.REFERENCE}
+        ring: dict[str, Any] = {
+            "marker": "o",
+            "linestyle": "none",
+            "markerfacecolor": "none",
+            "markeredgecolor": style.REFERENCE,
+        }
         if front is not None:
             if plane:
                 ax.plot(*staircase(front).T, color=style.REFERENCE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
@@ -200,11 +206,11 @@ class _Film:
         for side in ("top", "right"):
             ax.spines[side].set_visible(False)
         style.fix_ticks(ax)
-        dot = {"linestyle": "none", "color": self.colors(0.5)}
+        dot: dict[str, Any] = {"linestyle": "none", "color": self.colors(0.5)}
         handles = [Line2D([], [], marker="o", **dot, label="found, and its path on the map")]
         if any(each is not None for each in self.fronts):
             handles.append(Line2D([], [], **ring, label="exact front of this map"))
-        look = {"marker": "s", "markersize": 8, "markeredgecolor": "black", "linestyle": "none"}
+        look: dict[str, Any] = {"marker": "s", "markersize": 8, "markeredgecolor": "black", "linestyle": "none"}
         handles.append(Line2D([], [], color=_MOVER, **look, label="moving obstacle, and its way"))
         ax.legend(handles=handles, loc="upper right")
 

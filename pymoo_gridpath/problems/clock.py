@@ -109,7 +109,7 @@ class ObstacleClock(TimeSimulation):
         if self.told and not self.renew:
             raise GridPathError("told is True and renew False, expected one of them: what is told has its values renewed")
         self.callback = checks.instance("callback", callback, Callback, " of pymoo", optional=True)
-        self.problem: MovingObstaclesProblem | None = None
+        self.problem: Any = None
         self.n_missed = 0
         self.epochs: list[int] = []
         self.F: list[np.ndarray] = []

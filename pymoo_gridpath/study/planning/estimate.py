@@ -12,7 +12,7 @@ from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.study.planning.build import build_algorithm, build_planner, build_problem, build_termination
-from pymoo_gridpath.study.planning.moving import clock_of
+from pymoo_gridpath.study.planning.moving import clock_of, quietly
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, Task, has_own_budget, needed_for
 
 # Share of the time of a measurement that getting ready for it may take: compiled functions are loaded in the first one.
@@ -108,7 +108,8 @@ def _measure(task: Task, max_seconds: float) -> tuple[float, bool]:
     wanted = next(iter(task.budget.values()))
     records: list[tuple[float, int]] = []
     while algorithm.has_next() and (not records or records[-1][0] < max_seconds):
-        algorithm.next()
+        with quietly(problem):
+            algorithm.next()
         done = algorithm.evaluator.n_eval if "evaluations" in task.budget else len(records) + 1
         records.append((working_seconds() - begin, done))
     (first, first_done), (last, last_done) = records[0], records[-1]

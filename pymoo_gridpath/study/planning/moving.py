@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pymoo.core.callback import Callback
@@ -65,6 +67,15 @@ def fresh(problem: GridPathProblem) -> GridPathProblem:
 def clock_of(problem: GridPathProblem, callback: Callback) -> Callback:
     """Return what to call after each generation: the callback, by a clock where obstacles move."""
     return ObstacleClock(callback=callback) if isinstance(problem, MovingObstaclesProblem) else callback
+
+
+@contextlib.contextmanager
+def quietly(problem: GridPathProblem) -> Iterator[None]:
+    """Where obstacles move, let nobody be warned of genes that are no whole numbers: KGB makes them between others."""
+    with warnings.catch_warnings():
+        if isinstance(problem, MovingObstaclesProblem):
+            warnings.filterwarnings("ignore", "genes that are no whole numbers")
+        yield
 
 
 def budget_of(problem: Mapping[str, Any], budget: Mapping[str, int]) -> dict[str, int]:

@@ -14,18 +14,21 @@ from pymoo.core.result import Result
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.problems import GridPathProblem, MovingObstaclesProblem, ObstacleClock
 from pymoo_gridpath.problems.members import Members
 from pymoo_gridpath.quality import ReferenceFront, merge_fronts
 from pymoo_gridpath.study.planning.build import pack_grid
 from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedProblem
+from pymoo_gridpath.study.report import moving
 from pymoo_gridpath.study.report.figures.style import check_formats
 from pymoo_gridpath.study.report.page.contents import Contents
 from pymoo_gridpath.study.report.references import ProblemReference
 from pymoo_gridpath.study.report.results import Results, RunResult, measure
 from pymoo_gridpath.study.report.tables.csv_files import csv_files
 from pymoo_gridpath.study.report.writing import write_files
+from pymoo_gridpath.study.running.epochs import Epochs
 from pymoo_gridpath.study.running.record import RunRecord
+from pymoo_gridpath.study.specification import moving as specified
 from pymoo_gridpath.versions import versions
 
 _EXPECTED = "Results by problem and algorithm, such as {('maze', 'NSGA2'): [result, ...]}, or rows ('maze', 'NSGA2', result)"
@@ -43,7 +46,8 @@ def compare(
     """Compare runs that were made with `pymoo.optimize.minimize`: the tables, tests and figures of a study's report.
 
     Runs of one problem are measured against its exact front where ``problem.pareto_front()`` has it, which takes at most two
-    seconds unless it is known already; else against the merged front of all runs.
+    seconds unless it is known already; else against the merged front of all runs. Where obstacles move, what was found at the
+    end of each epoch is measured, which the run's `ObstacleClock` keeps, against the front of that epoch.
 
     Parameters
     ----------
@@ -70,8 +74,8 @@ def compare(
     Raises
     ------
     GridPathError
-        If there are no Results, one is of no path problem, or those of one problem are of different problems; if an argument is
-        wrong, or a file cannot be written.
+        If there are no Results, one is of no path problem, or those of one problem are of different problems; if obstacles
+        move and a run has no clock that kept all epochs; if an argument is wrong, or a file cannot be written.
 
     Examples
     --------
@@ -135,7 +139,8 @@ def _by_problem(rows: list[tuple[str, str, Result]]) -> dict[str, list[tuple[str
         first: Any = runs[0][1].problem if runs else result.problem
         other: Any = result.problem
         same = first is other or (
-            (first.grid, first.start, first.goal) == (other.grid, other.start, other.goal)
+            ([still.grid for still in first.stills], first.start, first.goal)
+            == ([still.grid for still in other.stills], other.start, other.goal)
             and repr(first.objectives) == repr(other.objectives)
         )
         if not same:
@@ -158,8 +163,8 @@ def _measured(by_problem: dict[str, list[tuple[str, Result]]], name: str, target
     measured = Results(plan, target)
     places = {label: k for k, label in enumerate(algorithms)}
     for k, runs in enumerate(by_problem.values()):
-        records = [_record(result, number) for number, (_, result) in enumerate(runs, 1)]
-        reference = _reference(runs[0][1].problem, [record.F for record in records])
+        records = [_record(label, result, number) for number, (label, result) in enumerate(runs, 1)]
+        reference = _reference(runs[0][1].problem, records)
         measured.references.append(reference)
         for (label, _), record in zip(runs, records, strict=True):
             found = RunResult(record.key, k, places[label], record.seed, record.status)
@@ -168,16 +173,38 @@ def _measured(by_problem: dict[str, list[tuple[str, Result]]], name: str, target
     return measured
 
 
-def _reference(problem: Any, fronts: list[np.ndarray]) -> ProblemReference:
-    front = problem.pareto_front()
+def _reference(problem: Any, records: list[RunRecord]) -> ProblemReference:
+    reason = "the problem has no exact front, or none that was found in a short time"
+    epochs = [record.epochs for record in records if record.epochs is not None]
+    if epochs:
+        exact = [still.pareto_front() for still in problem.stills]
+        if any(front is None for front in exact):
+            fronts = moving.merged(epochs, problem.n_obj)
+            return ProblemReference(fronts[-1], reason, np.nan, False, fronts)
+        fronts = tuple(ReferenceFront(front) for front in exact)
+        exceeded = moving.exceeded(epochs, fronts)
+        return ProblemReference(fronts[-1], "", np.nan, exceeded, fronts)
+    front, found = problem.pareto_front(), [record.F for record in records]
     if front is None:
-        reason = "the problem has no exact front, or none that was found in a short time"
-        return ProblemReference(ReferenceFront(merge_fronts(fronts), exact=False), reason, np.nan, False)
+        return ProblemReference(ReferenceFront(merge_fronts(found), exact=False), reason, np.nan, False)
     known = ReferenceFront(front)
-    return ProblemReference(known, "", np.nan, known.exceeded_by(np.concatenate(fronts)))
+    return ProblemReference(known, "", np.nan, known.exceeded_by(np.concatenate(found)))
 
 
-def _record(result: Result, number: int) -> RunRecord:
+def _epochs(label: str, result: Result) -> Epochs | None:
+    """Return what a run had found at the end of each epoch; None where obstacles do not move."""
+    problem, clock = result.problem, getattr(result.algorithm, "callback", None)
+    if not isinstance(problem, MovingObstaclesProblem):
+        return None
+    if not isinstance(clock, ObstacleClock) or clock.epochs != list(range(problem.n_epochs)):
+        raise GridPathError(
+            f"a run of {label!r} has no clock that kept all {problem.n_epochs} epochs, expected "
+            "minimize(..., callback=ObstacleClock()) from the first to the last"
+        )
+    return Epochs.of(clock.F, clock.evaluations, clock.missed, clock.faults)
+
+
+def _record(label: str, result: Result, number: int) -> RunRecord:
     """Return a run as a study would store it, but for its history."""
     algorithm: Any = result.algorithm
     problem: Any = result.problem
@@ -206,13 +233,18 @@ def _record(result: Result, number: int) -> RunRecord:
         n_legal=members.n_legal,
         n_members=members.n_members,
         history=None,
+        epochs=_epochs(label, result),
     )
 
 
 def _problem(problem: Any) -> dict[str, Any]:
     """Return what a report says of a problem, in the form in which studies have it."""
+    moves = {}
+    if isinstance(problem, MovingObstaclesProblem):
+        moves["moving"] = specified.entry(specified.held(problem.movers, problem.n_epochs), problem.taut)
     return {
-        "grid": pack_grid(problem.grid)[0],
+        **moves,
+        "grid": pack_grid(problem.stills[0].grid)[0],
         "start": list(problem.start),
         "goal": list(problem.goal),
         "objectives": [

@@ -61,6 +61,12 @@ def ratios(history: History, of_records: np.ndarray, fronts: Sequence[ReferenceF
     return found
 
 
+def exceeded(epochs: Sequence[Epochs], fronts: Sequence[ReferenceFront]) -> bool:
+    """Whether runs found points beyond the front of some epoch."""
+    by_epoch = zip(*(each.fronts() for each in epochs), strict=True)
+    return any(front.exceeded_by(np.concatenate(found)) for front, found in zip(fronts, by_epoch, strict=True))
+
+
 def merged(epochs: Sequence[Epochs], n_obj: int) -> tuple[ReferenceFront, ...]:
     """Return the merged front of runs in each epoch, which takes the place of the exact one."""
     by_epoch = zip(*(each.fronts() for each in epochs), strict=True)

@@ -79,8 +79,7 @@ def _exact_epochs(exact: RunRecord, finished: list[RunRecord]) -> ProblemReferen
     """Return the exact front of each epoch."""
     assert exact.epochs is not None
     epochs = tuple(ReferenceFront(F, exact=True) for F in exact.epochs.fronts())
-    found = [record.epochs.fronts() for record in finished if record.epochs is not None]
-    exceeded = any(front.exceeded_by(np.concatenate(F)) for front, F in zip(epochs, zip(*found, strict=True), strict=True))
+    exceeded = moving.exceeded([record.epochs for record in finished if record.epochs is not None], epochs)
     return ProblemReference(epochs[-1], "", exact.seconds, exceeded, epochs)
 
 

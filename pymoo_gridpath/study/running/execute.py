@@ -8,7 +8,6 @@ import os
 import platform
 import time
 import traceback
-import warnings
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -22,7 +21,7 @@ from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.problems import MovingObstaclesProblem, ObstacleClock
 from pymoo_gridpath.problems.members import Members, Snapshot, snapshot
 from pymoo_gridpath.study.planning.build import build_algorithm, build_planner, build_problem, build_termination
-from pymoo_gridpath.study.planning.moving import clock_of
+from pymoo_gridpath.study.planning.moving import clock_of, quietly
 from pymoo_gridpath.study.planning.plan import Task, needed_for
 from pymoo_gridpath.study.running.epochs import Epochs
 from pymoo_gridpath.study.running.record import History, RunRecord, to_bytes
@@ -136,10 +135,7 @@ def _searched(task: Task, problem) -> _Search:
     recorder = Recorder(problem.objective_names)
     termination = None if task.budget is None else build_termination(task.budget, algorithm)
     clock: Any = clock_of(problem, recorder)
-    with warnings.catch_warnings():
-        if clock is not recorder:
-            # As KGB makes them between those of the map before.
-            warnings.filterwarnings("ignore", "genes that are no whole numbers")
+    with quietly(problem):
         result = _search(problem, algorithm, task.seed, termination, recorder, clock)
     return _Search(algorithm, result, recorder, None if clock is recorder else clock)
 

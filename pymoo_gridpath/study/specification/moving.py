@@ -62,8 +62,7 @@ class MovingObstacles:
 
     def ways(self) -> list[list[list[int]]]:
         """Return the cells that are given, in each epoch of each mover."""
-        n_epochs = self.epochs or max(map(len, self.movers))
-        return [[list(way[min(k, len(way) - 1)]) for k in range(n_epochs)] for way in self.movers]
+        return held(self.movers, self.epochs or max(map(len, self.movers)))
 
 
 def check_moving(spec: Any) -> None:
@@ -76,6 +75,11 @@ def check_moving(spec: Any) -> None:
         value = getattr(spec, key)
         if value != fits and value not in others:
             raise StudyError(f"{key} is {values.show(value)}, expected {fits!r} where obstacles move", (key,))
+
+
+def held(ways: Sequence[Any], n_epochs: int) -> list[list[list[int]]]:
+    """Return the cells of movers in so many epochs: after its last one each stays."""
+    return [np.asarray(way)[np.minimum(np.arange(n_epochs), len(way) - 1)].tolist() for way in ways]
 
 
 def entry(ways: Sequence[Any], every: int) -> dict[str, Any]:
