@@ -106,7 +106,7 @@ def _maps(w: World) -> dict[str, Call]:
 def _problems(w: World) -> dict[str, Call]:
     problem, limited = w.problem, w.limited
     paths = problem.decode(w.legal_rows)
-    road = [(x, 0) for x in range(8)] + [(7, y) for y in range(1, 6)]
+    road = np.array([(x, 0) for x in range(8)] + [(7, y) for y in range(1, 6)])
     shortening = problems.ShorteningProblem(w.grid, road, n_points=2)
     moving = problems.MovingObstaclesProblem(w.grid, [[(-1, 0), (-2, 0)]], **w.query)
     timed = w.timed

@@ -40,6 +40,7 @@ class ShorteningProblem(Problem):
 
     Attributes
     ----------
+    radius : float
     moves : Moves
         The legal steps between the grown obstacles.
     road : numpy.ndarray of int64, shape (n,)
@@ -84,10 +85,10 @@ class ShorteningProblem(Problem):
 
     def __init__(self, grid: OccupancyGrid, road: ArrayLike, radius: float = 0.0, n_points: int = 10):
         self.grid = check_grid(grid)
-        radius = checks.number("radius", radius, 0.0, expected="a number of cells, zero or more")
+        self.radius = checks.number("radius", radius, 0.0, expected="a number of cells, zero or more")
         every = Moves(grid)
         self.road = _checked(road, grid, every)
-        usable = ~grid.grow(radius).occupied.ravel()
+        usable = ~grid.grow(self.radius).occupied.ravel()
         usable[self.road] = True
         self.moves = every.within(usable)
         self._cells = self.moves.cells(self.road)
