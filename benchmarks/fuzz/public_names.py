@@ -21,6 +21,7 @@ INTERNAL = ("pymoo_gridpath.search", "pymoo_gridpath.testing")
 BUILDING_BLOCKS = (
     "Box",
     "Cell",
+    "CornerCutting",
     "CountedPath",
     "CountedSearch",
     "Moves",

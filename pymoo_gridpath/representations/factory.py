@@ -47,8 +47,8 @@ def default_representation(corner_cutting: CornerCutting, axis: Axis = "auto") -
     ('cells', 'integer')
     """
     check_axis(axis)
-    of_the_paper = as_corner_cutting(corner_cutting, GridPathError) is True
-    return IntegerRepresentation.name if of_the_paper or axis != "auto" else CellSequence.name
+    corner_cutting = as_corner_cutting(corner_cutting, GridPathError)
+    return IntegerRepresentation.name if corner_cutting is True or axis != "auto" else CellSequence.name
 
 
 def make_representation(

@@ -14,7 +14,9 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.planners import Planner
 from pymoo_gridpath.problems import GridPathProblem
 from pymoo_gridpath.problems.grid_path import Obstacles
+from pymoo_gridpath.testing.enumeration import RULES
 from pymoo_gridpath.testing.global_state import global_state
+from pymoo_gridpath.testing.reference import is_legal
 
 CODINGS = ("cells", "integer", "binary", "mixed", "absolute")
 
@@ -56,6 +58,20 @@ class PlannerSuite:
         assert (problem.decode(X).interfering_cells == 0).all()
         assert np.array_equal(problem.score(problem.decode(X)), result.pop.get("F"))
 
+    @pytest.mark.parametrize("steps", RULES, ids=str)
+    def test_paths_keep_to_the_steps_of_the_grid(self, steps):
+        usual = self.problem()
+        grid = usual.grid.replace(**steps)
+        problem: Any = GridPathProblem(grid, usual.start, usual.goal, "cells", objectives=usual.objectives)
+        if self.make().goes_diagonally and not grid.neighbourhood.diagonal:
+            with pytest.raises(CapabilityError, match="moves=8"):
+                self.run(problem)
+            return
+        paths = problem.decode(self.run(problem).pop.get("X"))
+        assert len(paths), f"no path on a grid of {steps}"
+        for k in range(len(paths)):
+            assert is_legal([tuple(cell) for cell in paths.cells(k).tolist()], grid, problem.start, problem.goal)
+
     def test_the_result_says_how_it_went(self):
         result = self.run(self.problem())
         assert isinstance(result.success, bool) and isinstance(result.message, str) and result.message
@@ -70,8 +86,8 @@ class PlannerSuite:
 
     def test_flags_are_truth_values_and_the_same_run_is_the_same(self):
         planner = self.make()
-        flags = planner.deterministic, planner.reference, planner.turns_back, planner.takes_operators, planner.takes_pop_size
-        assert all(isinstance(flag, bool) for flag in flags)
+        names = "deterministic", "reference", "turns_back", "goes_diagonally", "takes_operators", "takes_pop_size"
+        assert all(isinstance(getattr(planner, name), bool) for name in names)
         problem = self.problem()
         first, second = (self.run(problem, 1 if not planner.deterministic else seed).pop.get("X") for seed in (1, 2))
         assert np.array_equal(first, second), "not the same twice"

@@ -134,6 +134,22 @@ def test_paths_may_turn_back_but_in_the_papers_world(tmp_path, free_map, options
     assert json.loads((tmp_path / "out" / "paths.json").read_text())["settings"]["representation"] == representation
 
 
+@pytest.mark.parametrize(
+    ("options", "steps", "words"),
+    [
+        (["--moves", "4"], (False, 4), "no diagonal steps"),
+        (["--one-side"], ("one side", 8), "corners may be cut on one side"),
+    ],
+)
+def test_steps_are_an_option_of_maps(tmp_path, free_map, capsys, options, steps, words):
+    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", "--algorithm", "exact", "-o", tmp_path / "out", *options]
+    assert main([*map(str, arguments)]) == 0
+    document = json.loads((tmp_path / "out" / "paths.json").read_text())
+    assert (document["map"]["corner_cutting"], document["map"]["moves"]) == steps
+    assert main(["info", str(free_map), *options]) == 0
+    assert words in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("algorithm", ["spea2", "moea/d", "NSGA-III"])
 def test_plan_takes_other_algorithms_and_settings(tmp_path, free_map, algorithm):
     done = run(

@@ -146,7 +146,7 @@ def test_fronts_of_costs_of_moves_equal_enumeration_on_500_grids(part):
                 for point, *given in zip(found.F, cells, out["turn"], strict=True):
                     equal = np.isclose(scores, point, rtol=1e-9, atol=1e-8).all(axis=1)
                     assert given == min(others[equal].tolist()), label
-    assert max(sizes) >= 4 and np.mean(np.array(sizes) > 1) > 0.2
+    assert max(sizes) >= 4 and np.mean(np.array(sizes) > 1) > 0.15
 
 
 def test_fronts_of_short_rows_equal_enumeration():
@@ -180,7 +180,7 @@ def test_dear_moves_beside_cheap_ones_keep_every_point():
         cheap = expected[expected[:, 1] < 1e19]
         np.testing.assert_allclose(F[F[:, 1] < 1e19], cheap, rtol=1e-9)
         n_points += len(cheap)
-    assert n_points > 70
+    assert n_points > 60
 
 
 def label_search(grid, start, goal, objectives):

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pymoo_gridpath.errors import GridPathError, MapError
+from pymoo_gridpath.errors import GridError, GridPathError, MapError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import load_map
 
@@ -47,6 +47,10 @@ def test_common_options(write, kind):
     path = write(f"m.{kind}", KINDS[kind])
     assert load_map(path, corner_cutting=True).corner_cutting
     assert not load_map(path, corner_cutting=None).corner_cutting
+    assert load_map(path, corner_cutting="one side").corner_cutting == "one side"
+    assert (load_map(path, moves=4).moves, load_map(path).moves) == (4, 8)
+    with pytest.raises(GridError, match="moves is 5, expected 4 or 8"):
+        load_map(path, moves=5)
     if kind != "yaml":
         grid = load_map(path, resolution=0.5, origin=(1, 2), unknown=None)
         assert (grid.resolution, grid.origin) == (0.5, (1.0, 2.0, 0.0))

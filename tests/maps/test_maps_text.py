@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pymoo_gridpath.maps import TextHeader, _files, read_text, read_text_header
+from pymoo_gridpath.maps import TextHeader, _files, load_map, read_text, read_text_header
 
 HEADER = """name: yard
 title: A yard: with a colon
@@ -38,6 +38,12 @@ def test_options_go_before_the_header(write):
     assert (grid.corner_cutting, grid.resolution, grid.origin) == (False, 3.0, (7.0, 8.0, 9.0))
 
 
+def test_the_header_says_what_steps_there_are(write):
+    path = write("m.txt", "corner_cutting: one side\nmoves: 4\n" + ROWS)
+    assert (read_text(path).corner_cutting, read_text(path).moves) == ("one side", 4)
+    assert (load_map(path).moves, load_map(path, moves=8).moves) == (4, 8)
+
+
 def test_without_a_header_all_of_it_is_none(write):
     assert read_text_header(write("m.txt", ROWS)) == TextHeader()
 
@@ -66,7 +72,8 @@ def test_harmless_variations_read_alike(write, text):
         ("resolution: nan\n" + ROWS, 1, ["resolution", "nan"]),
         ("resolution: 1 2\n" + ROWS, 1, ["resolution", "1 2"]),
         ("origin: 1\n" + ROWS, 1, ["origin", "two or three"]),
-        ("corner_cutting: yes\n" + ROWS, 1, ["corner_cutting", "yes", "true or false"]),
+        ("moves: 6\n" + ROWS, 1, ["moves", "6", "4 or 8"]),
+        ("corner_cutting: yes\n" + ROWS, 1, ["corner_cutting", "yes", "true, false or one side"]),
         ("start: 1\n" + ROWS, 1, ["start", "two whole numbers"]),
         ("start: 0.5 1\n" + ROWS, 1, ["start", "two whole numbers"]),
         ("\nstart: 0 1\n" + ROWS, 2, ["start", "0, 1", "free cell"]),

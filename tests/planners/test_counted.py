@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -199,6 +200,30 @@ def test_a_spiral_takes_as_many_cells_as_in_pathfinding_js(corner_cutting, count
     moves = Moves(grid.replace(corner_cutting=corner_cutting))
     found = breadth_first(moves, moves.index(start), moves.index(goal))
     assert (found.opened, found.closed) == counts
+
+
+STEPS_OF = {
+    "cut": {"corner_cutting": True},
+    "kept": {"corner_cutting": False},
+    "one side": {"corner_cutting": "one side"},
+    "four moves": {"moves": 4},
+}
+
+
+def test_every_rule_for_steps_has_the_lengths_and_counts_of_pathfinding_js():
+    """From the first cell of the first row to the last of the last, on grids on which the rules differ."""
+    lines = (Path(__file__).parent / "steps_of_pathfinding_js.csv").read_text().splitlines()
+    cases = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    assert len(cases) == 48
+    for case in cases:
+        grid = OccupancyGrid([[int(cell) for cell in row] for row in case["rows"].split("/")], **STEPS_OF[case["rule"]])
+        moves = Moves(grid)
+        ends = 0, moves.n_cells - 1
+        for found in (best_first(moves, *ends), jump_points(moves, *ends, grid.neighbourhood)):
+            total = length(cells_of(moves, found.path)) if len(found.path) else -1.0
+            assert total == pytest.approx(float(case["length"]), abs=1e-3)
+        found = breadth_first(moves, *ends)
+        assert (found.opened, found.closed) == (int(case["opened"]), int(case["closed"]))
 
 
 def golden(companions, name):

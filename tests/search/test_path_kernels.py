@@ -223,6 +223,18 @@ def test_stretches_are_rerouted_straightened_and_shifted():
     assert change(SHIFT, 2, 3, 4) == zigzag, "nothing between"
 
 
+def test_stretches_are_straightened_without_diagonal_steps_too():
+    terrain = make_terrain(Moves(SPIRAL.replace(occupied=np.zeros((3, 4)), moves=4)), 0, 11)
+    stairs = [0, 1, 5, 6, 10, 11]
+    noise = np.zeros((1, 3), dtype=np.int64)
+
+    def straightened(heading):
+        one = [np.array([v]) for v in (STRAIGHTEN, 0, 5, heading)]
+        return split(vary(terrain, joined([stairs]), Changes(*one, np.array([[1024]]), noise), 4, 999, 99))[0]
+
+    assert straightened(0) == [0, 1, 2, 3, 7, 11] and straightened(1) == [0, 4, 8, 9, 10, 11]
+
+
 @settings(max_examples=30)
 @given(queries(density=0.25), names)
 def test_whole_paths_are_legal_and_lead_through_their_points(query, name):

@@ -21,6 +21,7 @@ from pymoo_gridpath.study.planning import build
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_termination, pack_grid
 from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.specification.study import Study
+from pymoo_gridpath.testing.enumeration import RULES
 
 GRID = random_dense_grid(8, 0.2, 1)
 RANDOM: dict[str, Any] = {"random": {"size": 8, "p0": 0.2}}
@@ -55,10 +56,10 @@ def same(one, other) -> bool:
 @given(
     occupied=arrays(bool, st.tuples(st.integers(1, 12), st.integers(1, 12))),
     resolution=st.floats(0.01, 10),
-    corner_cutting=st.booleans(),
+    steps=st.sampled_from(RULES),
 )
-def test_grids_pack_and_build(occupied, resolution, corner_cutting):
-    grid = OccupancyGrid(occupied, resolution, (1, 2, 3), corner_cutting, "a name")
+def test_grids_pack_and_build(occupied, resolution, steps):
+    grid = OccupancyGrid(occupied, resolution, (1, 2, 3), name="a name", **steps)
     spec, cells = pack_grid(grid)
     assert build_grid(json.loads(json.dumps(spec)), cells) == grid.replace(resolution=1.0, origin=(0, 0, 0), name="grid")
     assert pack_grid(grid.replace(name="another", resolution=2.0, origin=(0, 0)))[0] == spec

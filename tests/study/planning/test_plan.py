@@ -321,6 +321,7 @@ def test_defaults_of_cells_and_of_parameters():
     turn = {"map": "warehouse", "objectives": ["length", "turn"]}
     assert keys(turn, plain | {"smoothness": False}) == keys(turn, plain)
     assert keys({"map": "paper16", "corner_cutting": True}) == keys({"map": "paper16"})
+    assert keys({"map": "paper16", "moves": 8}) == keys({"map": "paper16"})
     assert keys({"map": "paper16", "start": [0, 0], "goal": [15, 15]}) == keys({"map": "paper16"})
 
 
@@ -346,6 +347,8 @@ def test_every_setting_changes_the_key():
             )
         ),
         *({"map": "paper16"} | change for change in ({}, {"corner_cutting": False}, {"goal": [15, 14]}, {"start": [0, 1]})),
+        *({"map": "paper16"} | change for change in ({"corner_cutting": "one side"}, {"moves": 4})),
+        {"random": {"size": 8, "p0": 0.1, "seeds": 3, "moves": 4}},
         {"map": "warehouse"},
         {"map": "warehouse", "radius": 0.3},
     ]

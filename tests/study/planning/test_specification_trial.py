@@ -22,6 +22,7 @@ from pymoo_gridpath.study.running.record import from_bytes
 from pymoo_gridpath.study.specification import parameters as further
 from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.study.specification.toml_file import load_study
+from pymoo_gridpath.testing.enumeration import RULES
 
 POINTS = [[10, 1], [12, 0.5]]
 
@@ -116,18 +117,18 @@ def test_what_fails_in_the_small_alone_is_not_refused(monkeypatch):
     assert "RuntimeError: too small" in refusal({"algorithm": "NSGA2", "pop_size": 30}, {"random": {"size": 120, "p0": 0.2}})
 
 
-@pytest.mark.parametrize("corner_cutting", [True, False])
+@pytest.mark.parametrize("steps", RULES, ids=str)
 @pytest.mark.parametrize("axis", ["auto", "x", "y"])
-def test_every_representation_has_a_path_on_the_grid_that_stands_in(monkeypatch, corner_cutting, axis):
+def test_every_representation_has_a_path_on_the_grid_that_stands_in(monkeypatch, steps, axis):
     monkeypatch.setattr(trial, "_MOST_CELLS", 1)
     small = []
     monkeypatch.setattr(trial, "_run", lambda pair: small.append(build_problem(pair.problem, pair.grid)))
     for name in REPRESENTATIONS:
         if name == "cells" and axis != "auto":
             continue
-        family = {"size": 32, "p0": 0.1, "corner_cutting": corner_cutting}
+        family = {"size": 32, "p0": 0.1, "corner_cutting": False} | steps
         plan_of({"algorithm": "NSGA2"}, {"random": family, "representation": name, "axis": axis})
-        assert (small[-1].grid.width, small[-1].grid.corner_cutting) == (32, corner_cutting)
+        assert (small[-1].grid.width, small[-1].grid) == (32, small[-1].grid.replace(**steps))
         assert small[-1].goal == (31, 31)
     assert len(small) == len(REPRESENTATIONS) - (axis != "auto")
 
