@@ -21,11 +21,15 @@ from pymoo_gridpath.study.planning.build import pack_grid
 from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedProblem
 from pymoo_gridpath.study.report.figures.style import check_formats
 from pymoo_gridpath.study.report.page.contents import Contents
+from pymoo_gridpath.study.report.page.explorers import Rows
 from pymoo_gridpath.study.report.results import ProblemReference, Results, RunResult, measure
 from pymoo_gridpath.study.report.tables.csv_files import csv_files
 from pymoo_gridpath.study.report.writing import write_files
 from pymoo_gridpath.study.running.record import RunRecord
 from pymoo_gridpath.versions import versions
+
+# Runs of a problem go by their numbers.
+_RUN = "run "
 
 _EXPECTED = "Results by problem and algorithm, such as {('maze', 'NSGA2'): [result, ...]}, or rows ('maze', 'NSGA2', result)"
 
@@ -95,9 +99,10 @@ def compare(
     forms = check_formats(checks.names("formats", formats))
     if output is not None:
         checks.file_path("output", output)
-    measured = _measured(_by_problem(_rows(results)), name, target)
+    by_problem = _by_problem(_rows(results))
+    measured = _measured(by_problem, name, target)
     if output is not None:
-        write_files(measured, Path(output), forms, times)
+        write_files(measured, Path(output), forms, times, _genes(by_problem))
     contents = Contents(measured, times)
     for _ in contents.blocks():
         """The tests are made on the way."""
@@ -167,6 +172,17 @@ def _measured(by_problem: dict[str, list[tuple[str, Result]]], name: str, target
     return measured
 
 
+def _genes(by_problem: dict[str, list[tuple[str, Result]]]) -> Rows:
+    """Return what finds the genes of the runs that `_record` named."""
+    all_runs = list(by_problem.values())
+
+    def read(problem: int, keys: Sequence[str]) -> tuple[GridPathProblem, list[np.ndarray]]:
+        runs: list[Any] = [all_runs[problem][int(key.removeprefix(_RUN)) - 1][1] for key in keys]
+        return runs[0].problem, [np.atleast_2d(run.algorithm.pop.get("X")) for run in runs]
+
+    return read
+
+
 def _reference(problem: Any, fronts: list[np.ndarray]) -> ProblemReference:
     front = problem.pareto_front()
     if front is None:
@@ -184,7 +200,7 @@ def _record(result: Result, number: int) -> RunRecord:
     front = members.front()
     seed = getattr(algorithm, "seed", None)
     return RunRecord(
-        key=f"run {number}",
+        key=f"{_RUN}{number}",
         seed=number if seed is None else int(seed),
         status="finished",
         message=getattr(result, "message", None) or "",
