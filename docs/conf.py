@@ -65,6 +65,7 @@ PLAIN_PAGES = (
     "exact",
     "companions",
     "maps",
+    "explorer",
     "command_line",
     "extend",
     "internals",

@@ -66,7 +66,8 @@ class Store:
     """The folder of a study.
 
     ``runs/<first two digits>/<key>.npz`` is a run, ``plan.json`` the plan, ``grids/<digest>.z`` the cells of a map,
-    ``study.toml`` the study file as it was given, ``damaged/`` what was found damaged. Nothing stands under its name before it is whole and on the disk.
+    ``study.toml`` the study file as it was given, ``damaged/`` what was found damaged. Nothing stands under its name before it
+    is whole and on the disk.
 
     Parameters
     ----------

@@ -16,9 +16,12 @@ from pymoo_gridpath.study.planning.build import build_problem
 from pymoo_gridpath.study.report.page.blocks import LinkedPages
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.running.store import Store
+from pymoo_gridpath.study.specification import own
 
 #: From the keys of finished runs of an algorithm on a problem to the problem, as these runs coded it, and the rows of each.
 Rows = Callable[[int, Sequence[str]], tuple[GridPathProblem, list[np.ndarray]]]
+
+_PACKAGE = __name__.partition(".")[0]
 
 # Of the size of an objective; what differs by no more is the same point.
 _SAME = 1e-6
@@ -28,10 +31,13 @@ def rows_of(store: Store, results: Results) -> Rows:
     """Return what reads rows of genes out of a study."""
 
     def read(problem: int, keys: Sequence[str]) -> tuple[GridPathProblem, list[np.ndarray]]:
-        records = [store.read(key) for key in keys]
-        return build_problem(records[0].problem, store.read_grid(results.plan.problems[problem])), [
-            record.X for record in records
-        ]
+        records, grid = [store.read(key) for key in keys], store.read_grid(results.plan.problems[problem])
+        content = records[0].problem
+        for thing in (*content["objectives"], content["representation"]):
+            # Nothing is imported because a stored file names it.
+            if not isinstance(thing, str) and not str(thing["class"]).startswith(f"{_PACKAGE}."):
+                raise GridPathError(f"{own.shown(thing)} is of another package, expected things of {_PACKAGE} alone")
+        return build_problem(content, grid), [record.X for record in records]
 
     return read
 
@@ -68,7 +74,7 @@ def _page(rows: Rows, problem: int, keys: Sequence[str], fronts: list[np.ndarray
         solved, genes = rows(problem, keys)
         found = TradeOffSet.from_genes(solved, np.concatenate(genes))
     except (GridPathError, ValueError):
-        return None  # damaged since, or of other genes than the problem has
+        return None  # damaged since, of other genes than the problem has, or of an objective that is somebody's own
     merged = merge_fronts(fronts)
     far = np.abs(merged[:, None] - found.F) > _SAME * np.maximum(np.abs(merged), 1.0)[:, None]
     lost = np.all(np.any(far, axis=2), axis=1)
