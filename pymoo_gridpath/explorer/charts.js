@@ -152,7 +152,7 @@ class Front extends Chart {
     context.strokeStyle = color("line");
     context.fillStyle = color("muted");
     context.textAlign = "center";
-    for (const { value, text } of x.ticks((box.right - box.left) / (56 * dot))) {
+    for (const { value, text } of x.ticks((box.right - box.left) / (40 * dot))) {
       const px = this.across(x.place(value));
       line(context, px, box.top, px, box.bottom);
       context.fillText(text, px, box.bottom + 14 * dot);

@@ -185,7 +185,7 @@ class Store:
 
     def read_grid(self, planned: PlannedProblem) -> bytes | None:
         """Return the packed cells of a problem's map, or None of random grids, or where they are not there."""
-        file = self._grid_file(planned)
+        file = self._grid_file(checks.instance("planned", planned, PlannedProblem))
         with readable(self.folder):
             return file.read_bytes() if file is not None and file.is_file() else None
 
