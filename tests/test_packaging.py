@@ -74,7 +74,8 @@ def plan_runs_from(archive: Path, folder: Path) -> None:
     options = ["--quiet", "--disable-pip-version-check", "--no-index", "--no-deps", "--no-build-isolation", "--no-compile"]
     run("-m", "pip", "install", *options, "--target", target, archive, cwd=folder)
     # Compiling takes longer than all the rest.
-    plan = ["plan", "paper16", "--representation", "cells", "--pop-size", "20", "--generations", "5", "-o", "out", "--html", "front.html"]
+    plan = ["plan", "paper16", "--representation", "cells", "--pop-size", "20", "--generations", "5", "-o", "out"]
+    plan += ["--html", "front.html"]
     shown = run("-c", PLAN, *plan, cwd=folder, PYTHONPATH=str(target), NUMBA_DISABLE_JIT="1")
     assert Path(shown[0]).is_relative_to(target)
     assert any("shortest" in line for line in shown)
