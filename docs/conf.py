@@ -67,6 +67,7 @@ PLAIN_PAGES = (
     "planners",
     "papers",
     "maps",
+    "explorer",
     "command_line",
     "extend",
     "internals",

@@ -75,10 +75,12 @@ def plan_runs_from(archive: Path, folder: Path) -> None:
     run("-m", "pip", "install", *options, "--target", target, archive, cwd=folder)
     # Compiling takes longer than all the rest.
     plan = ["plan", "paper16", "--representation", "cells", "--pop-size", "20", "--generations", "5", "-o", "out"]
+    plan += ["--html", "front.html"]
     shown = run("-c", PLAN, *plan, cwd=folder, PYTHONPATH=str(target), NUMBA_DISABLE_JIT="1")
     assert Path(shown[0]).is_relative_to(target)
     assert any("shortest" in line for line in shown)
     assert (folder / "out" / "paths.json").exists() and (folder / "out" / "map.png").exists()
+    assert (folder / "front.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
 
 
 def test_an_sdist_holds_what_a_checkout_holds_and_runs(source, tmp_path):

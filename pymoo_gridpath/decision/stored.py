@@ -21,6 +21,10 @@ from pymoo_gridpath.representations import REPRESENTATIONS
 
 _MEASURES = ("length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance")
 _FIELDS = ("cells", "names", "genes", "objectives", *_MEASURES)
+
+# A file of a few bytes shall not take more memory than any real map.
+_MOST_CELLS = 2**28
+
 _WORDS = ("map", "query", "settings", "objectives", "labels", "occupied_runs", "feasible", "paths")
 
 
@@ -147,6 +151,8 @@ def _grid(content: dict) -> OccupancyGrid:
     stated = content["map"]
     runs = checks.array("occupied_runs", content["occupied_runs"], (None,), "iu", expected="numbers of cells")
     shape = checks.whole("height", stated["height"], 1), checks.whole("width", stated["width"], 1)
+    if shape[0] * shape[1] > _MOST_CELLS:
+        raise GridPathError(f"the map has {shape[1]} x {shape[0]} cells, expected at most {_MOST_CELLS:,}")
     if (runs < 0).any() or runs.sum(dtype=object) != shape[0] * shape[1]:
         raise GridPathError(f"occupied_runs is of another size than {shape[1]} x {shape[0]} cells, expected one of all cells")
     occupied = np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(shape)

@@ -15,6 +15,13 @@ function roundDown(most) {
   return [5, 2, 1].find((factor) => factor * power <= most * (1 + 1e-9)) * power;
 }
 
+/** Return the least of 1, 2 and 5 times a power of ten that is no less than a number. */
+function roundUp(least) {
+  const down = roundDown(least);
+  const factor = Math.round(down / 10 ** Math.floor(Math.log10(down) + 1e-9));
+  return down >= least * (1 - 1e-9) ? down : down * (factor === 2 ? 2.5 : 2);
+}
+
 /** Where the values of a column lie on an axis from 0 to 1; infinite ones (null) lie at its end. */
 class Scale {
   constructor(values, log) {
@@ -39,7 +46,7 @@ class Scale {
     return x === null ? 1 : (this.value(x) - this.from) / (this.to - this.from);
   }
 
-  /** Return about so many round numbers on the axis, each with its text. */
+  /** Return round numbers on the axis, about so many or fewer, each with its text. */
   ticks(count) {
     const numbers = this.roundNumbers(count);
     const gaps = numbers.slice(1).map((value, k) => value - numbers[k]);
@@ -57,7 +64,7 @@ class Scale {
       const each = Math.ceil(inside.length / count);
       if (inside.length > 1) return inside.filter((_, k) => k % each === 0);
     }
-    const step = roundDown((this.high - this.low) / count) || 1;
+    const step = roundUp((this.high - this.low) / count);
     const first = Math.ceil(this.low / step - 1e-9);
     const n = Math.floor(this.high / step + 1e-9) - first + 1;
     // Multiples, not sums, and without the noise of their last digits.
@@ -145,13 +152,13 @@ class Front extends Chart {
     context.strokeStyle = color("line");
     context.fillStyle = color("muted");
     context.textAlign = "center";
-    for (const { value, text } of x.ticks(5)) {
+    for (const { value, text } of x.ticks((box.right - box.left) / (40 * dot))) {
       const px = this.across(x.place(value));
       line(context, px, box.top, px, box.bottom);
       context.fillText(text, px, box.bottom + 14 * dot);
     }
     context.textAlign = "right";
-    for (const { value, text } of y.ticks(5)) {
+    for (const { value, text } of y.ticks(7)) {
       const py = this.up(y.place(value));
       line(context, box.left, py, box.right, py);
       context.fillText(text, box.left - 6 * dot, py + 4 * dot);

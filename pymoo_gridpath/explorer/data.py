@@ -29,8 +29,8 @@ _LABELS = {
 }
 
 
-def page_data(trade_off) -> dict[str, Any]:
-    """Return what a page knows of a trade-off set.
+def page_data(trade_off, title: str) -> dict[str, Any]:
+    """Return what a page of some title knows of a trade-off set.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def page_data(trade_off) -> dict[str, Any]:
     field = _levels(drawn_field(trade_off, box), grid)
     return {
         "map": {
-            "name": visible(grid.name),
+            "name": title,
             "size": [grid.width, grid.height],
             "corner": corner.tolist(),
             "resolution": resolution,
@@ -60,7 +60,7 @@ def page_data(trade_off) -> dict[str, Any]:
         "goal": (np.asarray(problem.goal) - corner).tolist(),
         "summary": _summary(trade_off, box, resolution),
         "caution": "" if trade_off.feasible else f"Not feasible: {trade_off.infeasibility}.",
-        "file_name": re.sub(r"[^A-Za-z0-9._-]+", "-", grid.name).strip("-.")[:60] or "map",
+        "file_name": re.sub(r"[^A-Za-z0-9._-]+", "-", title).strip("-.")[:60] or "map",
         "field_label": "Potential",
         "columns": _columns(trade_off, resolution),
         "names": [{"name": name, "path": k} for name, k in trade_off.named.items()] if trade_off.feasible else [],

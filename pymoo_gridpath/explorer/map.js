@@ -91,9 +91,10 @@ class MapView {
     this.view = { zoom: 1, x: this.width / 2, y: this.height / 2 };
   }
 
-  /** Dots a cell, and where the corner of the map is. */
+  /** Dots a cell, and where the corner of the map is. Below a map that is shown whole there is room for the scale. */
   get frame() {
-    const { width, height } = this.canvas;
+    const width = this.canvas.width;
+    const height = Math.max(this.canvas.height - 34 * (window.devicePixelRatio || 1), 1);
     const scale = 0.98 * Math.min(width / this.width, height / this.height) * this.view.zoom;
     return { scale, left: width / 2 - this.view.x * scale, bottom: height / 2 + this.view.y * scale };
   }

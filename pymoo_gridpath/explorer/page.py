@@ -58,8 +58,9 @@ def save_page(trade_off, file: str | os.PathLike[str], title: str | None = None)
 
 def page_text(trade_off, title: str | None = None) -> str:
     """Return the page of a trade-off set; see `save_page`."""
-    data = page_data(check_set(trade_off))
-    shown = str(data["map"]["name"]) if title is None else visible(checks.text("title", title))
+    check_set(trade_off)
+    shown = visible(trade_off.problem.grid.name if title is None else checks.text("title", title))
+    data = page_data(trade_off, shown)
     # Nothing of the data can end the element that they stand in, or begin another.
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {**_fixed(), "title": html.escape(shown), "data": text}

@@ -144,6 +144,7 @@ DAMAGE = {
     ),
     "another size": lambda c: c["occupied_runs"].append(10**12),
     "occupied_runs is": lambda c: c.update(occupied_runs="many"),
+    "expected at most 268,435,456": lambda c: c.update(occupied_runs=[10**12]) or c["map"].update(width=10**6, height=10**6),
     "height is": lambda c: c["map"].update(height=-1),
     "start is": lambda c: c["query"].update(start="here"),
     "not those of its genes": lambda c: c["paths"][0]["cells"].pop(),

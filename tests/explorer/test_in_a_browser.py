@@ -316,11 +316,14 @@ def test_a_notebook_shows_it(browser, tmp_path):
     file = tmp_path / "notebook.html"
     file.write_text(f"<!DOCTYPE html><meta charset=utf-8>{explore(exact_set(2, HOSTILE))._repr_html_()}", encoding="utf-8")
     page = browser.open(file.as_uri(), height=760)
-    page.run("new Promise((done) => setTimeout(done, 100))")
-    page.screenshot(tmp_path / "notebook.png")
-    dots = np.asarray(Image.open(tmp_path / "notebook.png").convert("RGB")).reshape(-1, 3)
-    # The chosen path, in the colour of the page's accent: the frame is alive.
-    assert (dots == [0x0B, 0x57, 0xD0]).all(axis=1).sum() > 300
+
+    def accent():
+        """Dots in the colour of the chosen path: there are some when the frame, in a process of its own, has drawn."""
+        page.screenshot(tmp_path / "notebook.png")
+        dots = np.asarray(Image.open(tmp_path / "notebook.png").convert("RGB")).reshape(-1, 3)
+        return (dots == [0x0B, 0x57, 0xD0]).all(axis=1).sum()
+
+    assert any(accent() > 300 for _ in range(200))
     assert page.complaints == [] and page.run("document.querySelector('iframe').title") == "Explorer of trade-off paths"
     assert html.escape("<script>") in explore(exact_set())._repr_html_()
     page.close()

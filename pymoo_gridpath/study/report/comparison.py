@@ -22,6 +22,7 @@ from pymoo_gridpath.study.planning.plan import Plan, PlannedAlgorithm, PlannedPr
 from pymoo_gridpath.study.report import moving
 from pymoo_gridpath.study.report.figures.style import check_formats
 from pymoo_gridpath.study.report.page.contents import Contents
+from pymoo_gridpath.study.report.page.explorers import Rows
 from pymoo_gridpath.study.report.references import ProblemReference
 from pymoo_gridpath.study.report.results import Results, RunResult, measure
 from pymoo_gridpath.study.report.tables.csv_files import csv_files
@@ -30,6 +31,9 @@ from pymoo_gridpath.study.running.epochs import Epochs
 from pymoo_gridpath.study.running.record import RunRecord
 from pymoo_gridpath.study.specification import moving as specified
 from pymoo_gridpath.versions import versions
+
+# Runs of a problem go by their numbers.
+_RUN = "run "
 
 _EXPECTED = "Results by problem and algorithm, such as {('maze', 'NSGA2'): [result, ...]}, or rows ('maze', 'NSGA2', result)"
 
@@ -100,9 +104,10 @@ def compare(
     forms = check_formats(checks.names("formats", formats))
     if output is not None:
         checks.file_path("output", output)
-    measured = _measured(_by_problem(_rows(results)), name, target)
+    by_problem = _by_problem(_rows(results))
+    measured = _measured(by_problem, name, target)
     if output is not None:
-        write_files(measured, Path(output), forms, times)
+        write_files(measured, Path(output), forms, times, _genes(by_problem))
     contents = Contents(measured, times)
     for _ in contents.blocks():
         """The tests are made on the way."""
@@ -173,6 +178,17 @@ def _measured(by_problem: dict[str, list[tuple[str, Result]]], name: str, target
     return measured
 
 
+def _genes(by_problem: dict[str, list[tuple[str, Result]]]) -> Rows:
+    """Return what finds the genes of the runs that `_record` named."""
+    all_runs = list(by_problem.values())
+
+    def read(problem: int, keys: Sequence[str]) -> tuple[GridPathProblem, list[np.ndarray]]:
+        runs: list[Any] = [all_runs[problem][int(key.removeprefix(_RUN)) - 1][1] for key in keys]
+        return runs[0].problem, [np.atleast_2d(run.algorithm.pop.get("X")) for run in runs]
+
+    return read
+
+
 def _reference(problem: Any, records: list[RunRecord]) -> ProblemReference:
     reason = "the problem has no exact front, or none that was found in a short time"
     epochs = [record.epochs for record in records if record.epochs is not None]
@@ -212,7 +228,7 @@ def _record(label: str, result: Result, number: int) -> RunRecord:
     front = members.front()
     seed = getattr(algorithm, "seed", None)
     return RunRecord(
-        key=f"run {number}",
+        key=f"{_RUN}{number}",
         seed=number if seed is None else int(seed),
         status="finished",
         message=getattr(result, "message", None) or "",

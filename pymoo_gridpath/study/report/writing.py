@@ -10,9 +10,10 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.study.report.figures.style import check_formats
-from pymoo_gridpath.study.report.page.blocks import Picture, latex, linked_files, markdown
+from pymoo_gridpath.study.report.page.blocks import PAGES, LinkedPages, Picture, latex, linked_files, markdown
 from pymoo_gridpath.study.report.page.contents import Contents
 from pymoo_gridpath.study.report.page.drawing import draw_all
+from pymoo_gridpath.study.report.page.explorers import Rows, rows_of
 from pymoo_gridpath.study.report.page.html import page
 from pymoo_gridpath.study.report.results import Results, collect
 from pymoo_gridpath.study.report.tables.csv_files import csv_files
@@ -48,8 +49,9 @@ def write_report(
     -------
     list of pathlib.Path
         ``index.html`` (everything on one page), ``report.md``, ``tables.tex``, ``runs.csv``, ``problems.csv``, ``summary.csv``,
-        ``tests.csv``, and the figures. The same runs give the same bytes. Figures that a ``report.md`` of before links and
-        the new one does not are deleted.
+        ``tests.csv``, the figures, and in ``explorer`` a page for each merged front, to look at its paths and choose one. The
+        same runs give the same bytes. Figures and pages that a ``report.md`` of before links and the new one does not are
+        deleted.
 
     Raises
     ------
@@ -64,28 +66,29 @@ def write_report(
         target = checks.number("target", target, 0.0, 1.0, above=True, expected="a share above 0, at most 1")
     times = checks.flag("times", times)
     results = collect(Store(folder), target)
-    return write_files(results, Path(folder) / "report" if output is None else Path(output), forms, times)
+    output = Path(folder) / "report" if output is None else Path(output)
+    return write_files(results, output, forms, times, rows_of(Store(folder), results))
 
 
-def write_files(results: Results, directory: Path, forms: Sequence[str], times: bool) -> list[Path]:
+def write_files(results: Results, directory: Path, forms: Sequence[str], times: bool, rows: Rows | None = None) -> list[Path]:
     """Write the page, the tables and the figures of measured runs into a folder, and return their paths."""
-    figures = directory / _FIGURES
-    try:
-        figures.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        message = f"{figures}: the folder cannot be made ({error.strerror}), expected a writable place"
-        raise GridPathError(message) from None
-    contents = Contents(results, times)
+    _make(directory / _FIGURES)
+    contents = Contents(results, times, rows)
     blocks = draw_all(contents.blocks(), forms)
     pictures = [block for block in blocks if isinstance(block, Picture)]
-    drawn = {f"{picture.name}.{form}": data for picture in pictures for form, data in picture.files.items()}
+    drawn = {f"{_FIGURES}/{one.name}.{form}": data for one in pictures for form, data in one.files.items()}
+    linked = [page for block in blocks if isinstance(block, LinkedPages) for page in block.pages]
+    drawn |= {f"{PAGES}/{file}": str(text).encode() for _, file, text in linked}
+    if linked:
+        _make(directory / PAGES)
     # A report of fewer groups would leave figures of the earlier one behind. Other files may be the user's own.
     try:
-        earlier = linked_files((directory / "report.md").read_text(encoding="utf-8", errors="replace"), _FIGURES)
+        before = (directory / "report.md").read_text(encoding="utf-8", errors="replace")
     except OSError:
-        earlier = []
+        before = ""
+    earlier = [f"{part}/{name}" for part in (_FIGURES, PAGES) for name in linked_files(before, part)]
     for name in set(earlier) - set(drawn):
-        _remove(figures / name)
+        _remove(directory / name)
     texts = {
         "index.html": page(blocks, f"Study {results.plan.name}"),
         "report.md": markdown(blocks, _FIGURES),
@@ -93,7 +96,15 @@ def write_files(results: Results, directory: Path, forms: Sequence[str], times: 
         **csv_files(results, contents.families, times),
     }
     written = [write_whole(directory / name, text.encode()) for name, text in texts.items()]
-    return written + [write_whole(figures / name, data) for name, data in drawn.items()]
+    return written + [write_whole(directory / name, data) for name, data in drawn.items()]
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"{folder}: the folder cannot be made ({error.strerror}), expected a writable place"
+        raise GridPathError(message) from None
 
 
 def _remove(file: Path) -> None:

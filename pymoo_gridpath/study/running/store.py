@@ -17,12 +17,13 @@ from typing import Any
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.files import UNFINISHED, make_folder, replace_file
-from pymoo_gridpath.study.planning.plan import MAX_RUNS, Plan
+from pymoo_gridpath.study.planning.plan import MAX_RUNS, Plan, PlannedProblem
 from pymoo_gridpath.study.running.lock import locked
 from pymoo_gridpath.study.running.record import DamagedRecordError, RunRecord, from_bytes, read_meta
 
 # Folders of runs are named by the first two digits of their keys.
 _PART = re.compile("[0-9a-f]{2}")
+_DIGEST = re.compile("[0-9a-f]{64}")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 # Keys are hashes of what a run is; longer names of files are none on most systems.
@@ -64,8 +65,9 @@ class StoredRuns:
 class Store:
     """The folder of a study.
 
-    ``runs/<first two digits>/<key>.npz`` is a run, ``plan.json`` the plan, ``study.toml`` the study file as it was given,
-    ``damaged/`` what was found damaged. Nothing stands under its name before it is whole and on the disk.
+    ``runs/<first two digits>/<key>.npz`` is a run, ``plan.json`` the plan, ``grids/<digest>.z`` the cells of a map,
+    ``study.toml`` the study file as it was given, ``damaged/`` what was found damaged. Nothing stands under its name before it
+    is whole and on the disk.
 
     Parameters
     ----------
@@ -164,10 +166,14 @@ class Store:
         return found
 
     def write_plan(self, plan: Plan, study: str | None = None) -> None:
-        """Store the plan, and the text of the study file if there is one."""
+        """Store the plan, the grids of its maps, and the text of the study file if there is one."""
         checks.instance("plan", plan, Plan)
         if study is not None:
             checks.text("study", study)
+        for planned in plan.problems:
+            file = self._grid_file(planned)
+            if planned.grid is not None and file is not None and not file.exists():
+                self._write(file, planned.grid)
         self._write(self.folder / "plan.json", json.dumps(plan.to_json(), separators=(",", ":")).encode())
         file = self.folder / "study.toml"
         if study is not None:
@@ -178,6 +184,16 @@ class Store:
                 file.unlink()
             except OSError as error:
                 raise GridPathError(f"{file} cannot be removed: {error.strerror}") from None
+
+    def read_grid(self, planned: PlannedProblem) -> bytes | None:
+        """Return the packed cells of a problem's map, or None of random grids, or where they are not there."""
+        file = self._grid_file(checks.instance("planned", planned, PlannedProblem))
+        with readable(self.folder):
+            return file.read_bytes() if file is not None and file.is_file() else None
+
+    def _grid_file(self, planned: PlannedProblem) -> Path | None:
+        digest = planned.spec["grid"].get("digest", "")
+        return self.folder / "grids" / f"{digest}.z" if _DIGEST.fullmatch(digest) else None
 
     def read_plan(self) -> Plan:
         """Return the plan, without the grids of maps.

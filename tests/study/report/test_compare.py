@@ -54,7 +54,10 @@ def test_rows_are_as_good_and_files_are_written(runs, tmp_path):
     rows = [(*key, result) for key, results in runs.items() for result in results]
     assert compare(rows, tmp_path, name="my runs", formats=["svg"]) == compare(runs)
     names = {file.name for file in tmp_path.iterdir()}
-    assert names == {"index.html", "report.md", "tables.tex", "runs.csv", "problems.csv", "summary.csv", "tests.csv", "figures"}
+    tables = {"runs.csv", "problems.csv", "summary.csv", "tests.csv", "tables.tex"}
+    assert names == {"index.html", "report.md", "figures", "explorer", *tables}
+    made = sorted(file.name for file in (tmp_path / "explorer").iterdir())
+    assert made[-2:] == ["front-dense-8-NSGA2.html", "front-dense-8-SPEA2.html"]
     text = (tmp_path / "report.md").read_text()
     assert text.startswith("# Study my runs") and "integer" in text
     assert (tmp_path / "figures" / "fronts-dense-8.svg").exists()

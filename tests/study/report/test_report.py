@@ -1,5 +1,6 @@
 """Reports of a made-up study with gaps and of a real one: what their files say, against the stored runs."""
 
+import json
 import math
 import re
 import shutil
@@ -191,3 +192,45 @@ def test_a_real_study_has_a_report(done, tmp_path):
         history = done.read(row["key"]).history
         if row["evaluations_to_target"] not in ("", "inf"):
             assert int(row["evaluations_to_target"]) in history.evaluations
+
+
+def test_each_merged_front_has_a_page_to_choose_from(done, tmp_path):
+    files = write_report(done.folder, output=tmp_path, formats=())
+    index, markdown, _ = texts(tmp_path)
+    links = [address for address in Page(index).addresses if not address.startswith(("data:", "#"))]
+    plan = done.read_plan()
+    assert sorted(links) == sorted(str(file.relative_to(tmp_path)) for file in files if file.parent.name == "explorer")
+    fronts: dict[str, list[np.ndarray]] = {}
+    for run in plan.runs:
+        problem = plan.problems[run.problem]
+        if run.algorithm is not None and problem.label in ("dense/1", "field") and len(F := done.read(run.key).F):
+            fronts.setdefault(f"explorer/front-{problem.group}-{plan.algorithms[run.algorithm].label}.html", []).append(F)
+    assert set(links) == set(fronts) and len(links) == 8
+    assert all(f"]({link})" in markdown for link in links)
+    names = {"dense": ("length", "vulnerability"), "field": ("length", "turn")}
+    for link in links:
+        text = (tmp_path / link).read_text(encoding="utf-8")
+        data = json.loads(re.search(r'id="data">(.*)</script>', text)[1])
+        group, algorithm = re.fullmatch(r"explorer/front-(\w+)-(\w+)\.html", link).groups()
+        columns = {column["key"]: column["values"] for column in data["columns"]}
+        front = np.stack([columns[name] for name in names[group]], axis=1)
+        merged = np.concatenate(fronts[link])
+        merged = np.unique(merged[moocore.is_nondominated(merged, keep_weakly=True)], axis=0)
+        np.testing.assert_allclose(front, merged, rtol=1e-6)
+        assert data["map"]["name"] == f"{algorithm} on {'dense/1' if group == 'dense' else group}"
+    # A page whose runs are gone goes with the next report.
+    (tmp_path / links[0]).write_text("old")
+    (tmp_path / "explorer" / "mine.html").write_text("mine")
+    shutil.copytree(done.folder, tmp_path / "copy")
+    for run in plan.runs:
+        if run.algorithm is not None and plan.algorithms[run.algorithm].label == "moead":
+            (tmp_path / "copy" / done.path(run.key).relative_to(done.folder)).unlink()
+    write_report(tmp_path / "copy", output=tmp_path, formats=())
+    left = {file.name for file in (tmp_path / "explorer").iterdir()}
+    assert left == {"mine.html", *(link.removeprefix("explorer/") for link in links if "moead" not in link)}
+    assert (tmp_path / links[0]).read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+
+
+def test_genes_of_another_front_make_no_page(report):
+    """Those of the made-up study are none: its points were drawn."""
+    assert not (report / "explorer").exists() and "explorer/" not in texts(report)[1]

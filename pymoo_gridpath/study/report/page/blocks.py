@@ -75,6 +75,22 @@ class Picture:
 
 
 @dataclass(frozen=True)
+class LinkedPages:
+    """Links to pages of their own in a folder beside the report.
+
+    Attributes
+    ----------
+    text : str
+        What stands before the links.
+    pages : tuple of (str, str, str or callable)
+        The words of each link, the name of its file, and its page, or what returns it, or None if there is none.
+    """
+
+    text: str
+    pages: tuple[tuple[str, str, str | Callable[[], str | None]], ...]
+
+
+@dataclass(frozen=True)
 class Fold:
     """Blocks that a page shows on demand."""
 
@@ -82,7 +98,10 @@ class Fold:
     blocks: tuple[Block, ...]
 
 
-Block = Heading | Text | Caution | Listing | Table | Drawing | Picture | Fold
+Block = Heading | Text | Caution | Listing | Table | Drawing | Picture | LinkedPages | Fold
+
+# Folder of the pages that a report links.
+PAGES = "explorer"
 
 
 def markdown(blocks: Iterable[Block], folder: str) -> str:
@@ -103,6 +122,9 @@ def _markdown(block: Block, folder: str) -> str:
         return block.markdown()
     if isinstance(block, Picture):
         return _markdown_picture(block, folder)
+    if isinstance(block, LinkedPages):
+        links = ", ".join(f"[{escape_markdown(label)}]({PAGES}/{file})" for label, file, _ in block.pages)
+        return f"{escape_markdown(block.text)} {links}.\n"
     if isinstance(block, Fold):
         if len(block.blocks) == 1 and isinstance(block.blocks[0], Table):
             # Its caption is its title.
@@ -122,10 +144,10 @@ def _markdown_picture(picture: Picture, folder: str) -> str:
 
 
 def linked_files(text: str, folder: str) -> list[str]:
-    """Return the names of the figures in a folder that a report in Markdown links; the texts within it link none."""
+    """Return the names of the figures, or pages, in a folder that a report in Markdown links; its texts link none."""
     if not text.startswith("# Study "):
         return []
-    name = r"(?:ratios|convergence|attainment|fronts|ranks)[A-Za-z0-9.-]*\.(?:png|pdf|svg)"
+    name = r"(?:ratios|convergence|attainment|fronts|ranks|front)[A-Za-z0-9.-]*\.(?:png|pdf|svg|html)"
     return re.findall(rf"\]\({re.escape(folder)}/({name})\)", text)
 
 

@@ -13,6 +13,7 @@ from pymoo_gridpath.study.report.figures.stretched_axis import scale_sentence
 from pymoo_gridpath.study.report.figures.style import AlgorithmStyle, algorithm_styles
 from pymoo_gridpath.study.report.page import definitions, settings, state
 from pymoo_gridpath.study.report.page.blocks import Block, Caution, Drawing, Fold, Heading, Text
+from pymoo_gridpath.study.report.page.explorers import Rows, linked_pages
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.statistics.comparisons import TESTED, Comparison, compare, compare_each, could_tell
 from pymoo_gridpath.study.report.tables import moving, summary
@@ -32,6 +33,8 @@ class Contents:
     results : Results
     times : bool
         Whether seconds, machines and versions are part of it.
+    rows : callable, optional
+        See `Rows`; without it the report links no pages to choose a path from.
 
     Attributes
     ----------
@@ -39,8 +42,8 @@ class Contents:
         All tests.
     """
 
-    def __init__(self, results: Results, times: bool):
-        self.results = results
+    def __init__(self, results: Results, times: bool, rows: Rows | None = None):
+        self.results, self.rows = results, rows
         self.times = times
         labels = results.algorithms
         self.styles: list[AlgorithmStyle] = algorithm_styles(labels, [results.is_deterministic(k) for k in range(len(labels))])
@@ -162,6 +165,8 @@ class Contents:
         why = nobody if n_obj > 1 else "it has one objective"
         draw = partial(plot_fronts, results, problems[0], self.styles)
         yield Drawing(f"fronts-{name}", caption, draw, f"No merged fronts on {first}: {why}.")
+        if self.rows is not None:
+            yield linked_pages(results, problems[0], name, slugs(results.algorithms), self.rows)
 
     def _tests(self, level: str, scope: str, name: str, place: str, problems: Sequence[int]) -> tuple[Comparison, list[Block]]:
         """Return the comparison of hypervolume ratios on some problems, and the tests of all measures; keep them."""

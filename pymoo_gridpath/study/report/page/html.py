@@ -6,7 +6,7 @@ import base64
 import html
 from collections.abc import Iterable, Iterator, Sequence
 
-from pymoo_gridpath.study.report.page.blocks import Block, Caution, Fold, Heading, Listing, Picture, Text
+from pymoo_gridpath.study.report.page.blocks import PAGES, Block, Caution, Fold, Heading, LinkedPages, Listing, Picture, Text
 from pymoo_gridpath.study.report.page.contents import unique_slugs
 from pymoo_gridpath.study.report.tables.table import Table
 
@@ -91,6 +91,9 @@ def _rendered(blocks: Iterable[Block], anchors: Iterator[str]) -> list[str]:
             lines.append(block.html())
         elif isinstance(block, Picture):
             lines.append(_figure(block))
+        elif isinstance(block, LinkedPages):
+            links = (f'<a href="{PAGES}/{file}">{html.escape(label)}</a>' for label, file, _ in block.pages)
+            lines.append(f"<p>{html.escape(block.text)} {', '.join(links)}.</p>")
         elif isinstance(block, Fold):
             inner = "\n".join(_rendered(block.blocks, anchors))
             lines.append(f"<details><summary>{html.escape(block.title)}</summary>\n{inner}\n</details>")
