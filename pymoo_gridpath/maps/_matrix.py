@@ -11,7 +11,7 @@ from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.maps._files import check_size, decode, shorten
 
 # A number and what parts it from the next one.
-_BEGINS = re.compile(rb"[ \t]*[+-]?[0-9.]+(e[+-]?[0-9]+)?[ \t]*[ \t,;][ \t]*[+-]?[0-9.]", re.IGNORECASE)
+_BEGINS = re.compile(rb"[ \t]*[+-]?[0-9][0-9.]*(e[+-]?[0-9]+)?[ \t]*[ \t,;][ \t]*[+-]?[0-9]", re.IGNORECASE)
 _TO_BLANKS = bytes.maketrans(b",;\t", b"   ")
 
 
