@@ -119,9 +119,10 @@ class Planner(Algorithm, ABC):
     @classmethod
     def refuse(cls, problem) -> None:
         """Raise a CapabilityError if the planner cannot plan for a problem."""
-        if cls.goes_diagonally and not (grid := representation_of(problem).grid).neighbourhood.diagonal:
+        grid = representation_of(problem).grid
+        if cls.goes_diagonally and not grid.neighbourhood.diagonal:
             raise CapabilityError(
-                f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(grid.name)} has none; give the grid moves=8"
+                f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(grid.name)} has none; give it moves=8"
             )
         if cls.turns_back and representation_of(problem).monotone:
             raise CapabilityError(
