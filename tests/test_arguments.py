@@ -230,7 +230,7 @@ def test_a_grid_of_another_class_is_refused_wherever_one_is_taken(wrong):
         ({"origin": 3}, r"origin is 3, expected \(x, y\) or"),
         ({"origin": itertools.count()}, "origin is an object of the class count"),
         ({"origin": (0, None)}, r"origin is \(0, None\)"),
-        ({"corner_cutting": 1}, "corner_cutting is 1, expected True or False"),
+        ({"corner_cutting": 1}, "corner_cutting is 1, expected True, False or 'one side'"),
         ({"name": None}, "name is None, expected a text"),
         ({"occupied": [[0, 1], [0]]}, "occupied is .*, expected a two-dimensional array"),
         ({"occupied": np.ma.masked_array([[0, 1]], mask=[[0, 1]])}, "occupied holds masked values"),

@@ -122,18 +122,18 @@ class Planner(Algorithm, ABC):
     @classmethod
     def refuse(cls, problem) -> None:
         """Raise a CapabilityError if the planner cannot plan for a problem."""
-        if representation_of(problem).timed and not cls.in_time:
+        coding = representation_of(problem)
+        if coding.timed and not cls.in_time:
             raise CapabilityError(
                 f"{cls.__name__} plans paths on a map that stands still, and obstacles of a {type(problem).__name__} move; "
                 f"expected a planner that knows of time, such as {reference_planner()!r}, or a search with "
                 f"path_operators(problem)"
             )
-        if cls.goes_diagonally and not problem.grid.neighbourhood.diagonal:
+        if cls.goes_diagonally and not coding.grid.neighbourhood.diagonal:
             raise CapabilityError(
-                f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(problem.grid.name)} has none; give the "
-                "grid moves=8"
+                f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(coding.grid.name)} has none; give it moves=8"
             )
-        if cls.turns_back and representation_of(problem).monotone:
+        if cls.turns_back and coding.monotone:
             raise CapabilityError(
                 f"{cls.__name__} plans paths that may turn back, which the {problem.representation.name} representation cannot "
                 f"code; give the problem representation='cells'"

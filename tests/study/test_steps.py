@@ -43,7 +43,7 @@ def test_a_study_runs_and_reports_with_other_steps(tmp_path, steps):
 
 def test_a_planner_of_diagonal_steps_is_refused_where_there_are_none():
     with pytest.raises(
-        StudyError, match=r"QuadrantSelection plans by diagonal steps, and the grid .* has none; give the grid moves=8"
+        StudyError, match=r"QuadrantSelection plans by diagonal steps, and the grid .* has none; give it moves=8"
     ):
         plan_study(study({"moves": 4}, "qsa"))
 
