@@ -131,7 +131,8 @@ class Planner(Algorithm, ABC):
             )
         if cls.goes_diagonally and not coding.grid.neighbourhood.diagonal:
             raise CapabilityError(
-                f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(coding.grid.name)} has none; give it moves=8"
+                f"{cls.__name__} plans by diagonal steps, and the grid {checks.shown(coding.grid.name)} has none; give it "
+                f"moves=8"
             )
         if cls.turns_back and coding.monotone:
             raise CapabilityError(
