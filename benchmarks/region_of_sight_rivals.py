@@ -1,6 +1,6 @@
 """Region of sight beside its rivals, tables I to III of its paper: particles, ants and bees that shorten the same path.
 
-    python benchmarks/region_of_sight_rivals.py [--maps 30] [--kinds maze] [--evaluations 2500] [--fronts 10] [--jobs 2]
+    python benchmarks/region_of_sight_rivals.py [--maps 30] [--kinds maze] [--evaluations 2500] [--fronts 4] [--jobs 2]
 
 On seeded maps of the paper's three kinds, since its own are lost. All begin with the path that region of sight begins with, on
 its road, and rivals search `ShorteningProblem` on it: between obstacles grown by the same distance, and, as the distances that
