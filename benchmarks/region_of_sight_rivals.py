@@ -1,6 +1,6 @@
 """Region of sight beside its rivals, tables I to III of its paper: particles, ants and bees that shorten the same path.
 
-    python benchmarks/region_of_sight_rivals.py [--maps 30] [--kinds maze] [--evaluations 2500] [--fronts 4] [--jobs 2]
+    python benchmarks/region_of_sight_rivals.py [--maps 30] [--kinds maze] [--evaluations 2500] [--fronts 3] [--jobs 2]
 
 On seeded maps of the paper's three kinds, since its own are lost. All begin with the path that region of sight begins with, on
 its road, and rivals search `ShorteningProblem` on it: between obstacles grown by the same distance, and, as the distances that
@@ -286,10 +286,10 @@ def compare_fronts(found: dict[str, list[Fronts]]) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--maps", type=int, default=8, help="maps of each kind (default: 8; the documentation has 30)")
+    parser.add_argument("--maps", type=int, default=30, help="maps of each kind (default: 30)")
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds of maps (default: all)")
     parser.add_argument("--evaluations", type=int, default=2500, help="of each run of a rival (default: 2,500)")
-    parser.add_argument("--fronts", type=int, default=4, help="maps of each kind on which fronts are searched (default: 4)")
+    parser.add_argument("--fronts", type=int, default=3, help="maps of each kind on which fronts are searched (default: 3)")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: 2)")
     arguments = parser.parse_args()
     if "bees" not in RIVALS:
