@@ -273,7 +273,14 @@ def dominates(F: np.ndarray, point: np.ndarray) -> bool:
 def compare_fronts(found: dict[str, list[Fronts]]) -> None:
     """Print medians over the maps of each kind."""
     print("\nLengths of cells, and fronts of length and vulnerability, 100 members and generations of NSGA-II:\n")
-    head = ("Kind", "Maps", "Points of the exact front", "Seconds", "Region of sight over the shortest path", "dominated by it")
+    head = (
+        "Kind",
+        "Maps",
+        "Points of the exact front",
+        "Seconds",
+        "Region of sight over the shortest path",
+        "dominated by the front",
+    )
     lines = [[*head, "NSGA-II, seconds", "over the shortest path", "dominates region of sight"]]
     for kind, rows in found.items():
         values = np.array(rows)
