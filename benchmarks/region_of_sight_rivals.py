@@ -1,6 +1,6 @@
 """Region of sight beside its rivals, tables I to III of its paper: particles, ants and bees that shorten the same path.
 
-    python benchmarks/region_of_sight_rivals.py [--maps 30] [--evaluations 2500] [--fronts 2] [--jobs 2]
+    python benchmarks/region_of_sight_rivals.py [--maps 30] [--kinds maze] [--evaluations 2500] [--fronts 3] [--jobs 2]
 
 On seeded maps of the paper's three kinds, since its own are lost. All begin with the path that region of sight begins with, on
 its road, and rivals search `ShorteningProblem` on it: between obstacles grown by the same distance, and, as the distances that
@@ -143,8 +143,8 @@ def optimum(problem: ShorteningProblem, again: bool = False) -> Row:
     begin, rounds, best = time.process_time(), 0, np.inf
     while True:
         rounds += 1
-        (x,) = problem.pareto_set()
-        waypoints, cells = problem.waypoints(x), problem.cells(x)
+        x: Any = problem.pareto_set()
+        waypoints, cells = problem.waypoints(x[0]), problem.cells(x[0])
         if not again or waypoints.length > best - LEAST_GAIN:
             return row(problem.grid, waypoints, cells, rounds, np.nan, time.process_time() - begin)
         best = waypoints.length
@@ -228,44 +228,75 @@ def show(lines: list[list[str]]) -> None:
         print(f"| {' | '.join(line)} |")
 
 
-def fronts(kind: str, seed: int) -> str:
-    """Return what the exact front and that of NSGA-II say of one map."""
+class Fronts(NamedTuple):
+    """What the exact front of length and vulnerability and that of NSGA-II say of region of sight's path on one map."""
+
+    points: float
+    seconds: float
+    over_shortest: float
+    dominated: float
+    nsga_seconds: float
+    nsga_over_shortest: float
+    dominated_by_nsga: float
+
+
+def fronts(kind: str, seed: int) -> Fronts | None:
+    """Return that for a map, or None if its exact front takes too long."""
     grid = KINDS[kind](seed)
     problem = GridPathProblem(grid, *far_corners(grid), representation="cells")
-    mine = problem.evaluate(np.asarray(RegionOfSight().plan(problem).paths))[0]
+    ours = problem.evaluate(np.asarray(RegionOfSight().plan(problem).paths))[0]
     begin = time.process_time()
     exact = exact_front(problem, Budget(max_seconds=SECONDS))
-    took = time.process_time() - begin
-    begin = time.process_time()
+    seconds, begin = time.process_time() - begin, time.process_time()
+    if not exact.complete:
+        return None
     result = minimize(problem, make_algorithm("NSGA2", problem, pop_size=100), ("n_gen", 100), seed=seed)
-    seconds = time.process_time() - begin
-    pop: Any = result.pop
-    F = pop.get("F")[pop.get("interfering_cells") == 0]
-    text = f"- {kind}, seed {seed}: region of sight {mine.round(2).tolist()}; "
-    if exact.complete:
-        near = exact.F[exact.F[:, 0] <= mine[0] + 1e-9, 1].min()
-        text += f"exact front of {len(exact.F)} points in {took:.0f} s, {ends(exact.F)}, {verdict(exact.F, mine)}, "
-        text += f"least vulnerability at its length {near:.2f}; "
-    else:
-        text += f"exact front not known after {took:.0f} s; "
-    return text + f"NSGA-II, 100 members and generations in {seconds:.0f} s, {ends(F)}, {verdict(F, mine)}"
+    nsga_seconds, pop = time.process_time() - begin, result.pop
+    assert pop is not None
+    F, shortest = pop.get("F")[pop.get("interfering_cells") == 0], exact.F[:, 0].min()
+    return Fronts(
+        float(len(exact.F)),
+        seconds,
+        ours[0] / shortest,
+        dominates(exact.F, ours),
+        nsga_seconds,
+        F[:, 0].min() / shortest,
+        dominates(F, ours),
+    )
 
 
-def ends(F: np.ndarray) -> str:
-    return f"lengths {F[:, 0].min():.2f} to {F[:, 0].max():.2f}"
-
-
-def verdict(F: np.ndarray, mine: np.ndarray) -> str:
+def dominates(F: np.ndarray, point: np.ndarray) -> bool:
     """Return whether one of some points dominates another."""
-    found = ((mine + 1e-9 >= F).all(axis=1) & (mine - 1e-9 > F).any(axis=1)).any()
-    return f"{'dominates' if found else 'does not dominate'} it"
+    return bool(((point + 1e-9 >= F).all(axis=1) & (point - 1e-9 > F).any(axis=1)).any())
+
+
+def compare_fronts(found: dict[str, list[Fronts]]) -> None:
+    """Print medians over the maps of each kind."""
+    print("\nLengths of cells, and fronts of length and vulnerability, 100 members and generations of NSGA-II:\n")
+    head = (
+        "Kind",
+        "Maps",
+        "Points of the exact front",
+        "Seconds",
+        "Region of sight over the shortest path",
+        "dominated by the front",
+    )
+    lines = [[*head, "NSGA-II, seconds", "over the shortest path", "dominates region of sight"]]
+    for kind, rows in found.items():
+        values = np.array(rows)
+        points, seconds, over, _, nsga_seconds, nsga_over, _ = np.median(values, axis=0)
+        n_exact, n_nsga = (int(values[:, k].sum()) for k in (3, 6))
+        line = [kind, str(len(rows)), f"{points:.0f}", f"{seconds:.1f}", f"{over:.3f}", f"on {n_exact}"]
+        lines.append([*line, f"{nsga_seconds:.1f}", f"{nsga_over:.3f}", f"on {n_nsga}"])
+    show(lines)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--maps", type=int, default=8, help="maps of each kind (default: 8; the documentation has 30)")
+    parser.add_argument("--maps", type=int, default=30, help="maps of each kind (default: 30)")
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds of maps (default: all)")
     parser.add_argument("--evaluations", type=int, default=2500, help="of each run of a rival (default: 2,500)")
-    parser.add_argument("--fronts", type=int, default=1, help="maps of each kind on which fronts are searched (default: 1)")
+    parser.add_argument("--fronts", type=int, default=3, help="maps of each kind on which fronts are searched (default: 3)")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: 2)")
     arguments = parser.parse_args()
     if "bees" not in RIVALS:
@@ -273,18 +304,20 @@ def main() -> None:
 
     begin = time.perf_counter()
     with ProcessPoolExecutor(arguments.jobs) as pool:
-        for kind in KINDS if arguments.maps else ():
+        for kind in arguments.kinds if arguments.maps else ():
             done = []
             for rows in pool.map(partial(measure, kind, n_eval=arguments.evaluations), range(arguments.maps)):
                 done.append(rows)
                 say(f"{kind}: {len(done)} of {arguments.maps} maps, {time.perf_counter() - begin:.0f} s")
             table(kind, done)
-        if arguments.fronts:
-            print("\nFronts of length and vulnerability:\n")
-            for kind in KINDS:
-                for text in pool.map(partial(fronts, kind), range(arguments.fronts)):
-                    print(text, flush=True)
-                    say(f"fronts, {kind}: {time.perf_counter() - begin:.0f} s")
+        found: dict[str, list[Fronts]] = {}
+        for kind in arguments.kinds if arguments.fronts else ():
+            known = [one for one in pool.map(partial(fronts, kind), range(arguments.fronts)) if one is not None]
+            say(f"fronts, {kind}: {len(known)} of {arguments.fronts} known, {time.perf_counter() - begin:.0f} s")
+            if known:
+                found[kind] = known
+        if found:
+            compare_fronts(found)
 
 
 if __name__ == "__main__":
