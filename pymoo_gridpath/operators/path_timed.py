@@ -28,7 +28,7 @@ from pymoo_gridpath.search.timed import N_TERMS, TimedTerrain, draw_timed, make_
 from pymoo_gridpath.search.timed_vary import DELAY, HURRY, REROUTE, TimedChanges, splice_timed, vary_timed
 
 # Cells at ticks that all searches for a first population may go on from together.
-SEARCH_STATES = 8_000_000
+SEARCH_STATES = 2_000_000
 
 #: The ways in which `TimedMutation` changes a path, with the default shares.
 TIMED_WAYS = {"weighted": 0.5, "random": 0.2, "delay": 0.15, "hurry": 0.15}

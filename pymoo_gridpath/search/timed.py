@@ -187,7 +187,8 @@ def find_timed_route(terrain, work, cell, tick, target, end, weight, noise, limi
                     continue
                 other = here + terrain.offsets[m]
                 x, y = other % width, other // width
-                if max(abs(tx - x), abs(ty - y)) > end - tick - 1 or (other == goal and target != goal):
+                far, near = max(abs(tx - x), abs(ty - y)), min(abs(tx - x), abs(ty - y))
+                if far > end - tick - 1 or (other == goal and target != goal):
                     continue
                 step = weight[0] * terrain.tick
                 if m != WAIT:
@@ -197,6 +198,9 @@ def find_timed_route(terrain, work, cell, tick, target, end, weight, noise, limi
                 if noise[0] > 0:
                     step += (step * noise[0] >> 10) * block_noise(x >> noise[1], y >> noise[1], late) >> 10
                 total = reached + step
+                # The rest costs no less than the way on an empty map.
+                if total + weight[0] * terrain.tick * far + weight[1] * _octile(terrain, far, near) >= best:
+                    continue
                 if work.stamp[after, other] == run:
                     if total >= work.cost[after, other]:
                         continue
@@ -214,6 +218,11 @@ def find_timed_route(terrain, work, cell, tick, target, end, weight, noise, limi
         if target != goal and tick == end and work.stamp[now, target] == work.count[0]:
             return end
     return arrival
+
+
+@kernel
+def _octile(terrain, far, near):
+    return (far - near) * terrain.straight + near * terrain.diagonal
 
 
 @kernel

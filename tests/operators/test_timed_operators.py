@@ -117,7 +117,7 @@ def test_most_children_are_new():
     X = RandomTimedSampling()._do(problem, 80, random_state=rng)
     children = TimedCrossover()._do(problem, X.reshape(2, 40, -1), random_state=rng).reshape(80, -1)
     assert new_rows(children, X) > 60
-    for way, least in (("weighted", 25), ("random", 25), ("delay", 60), ("hurry", 20)):
+    for way, least in (("weighted", 25), ("random", 25), ("delay", 45), ("hurry", 20)):
         assert new_rows(TimedMutation({way: 1})._do(problem, X, random_state=rng), X) > least, way
 
 
@@ -149,9 +149,10 @@ def test_repair_follows_a_row_as_long_as_it_can():
     problem, _ = make(size=(3, 5), n_movers=0, density=0, horizon=8)
     rows = [[0, 1, 1, 6, 14, 0, 14, 14, 14], [0, 5, 10, 10, 10, 10, 10, 10, 14], [0, 14, 0, 14, 0, 14, 0, 14, 14]]
     repaired = TimedRepair()._do(problem, np.array(rows), random_state=np.random.default_rng(0))
-    assert repaired[0].tolist() == [0, 1, 1, 6, 12, 13, 14, 14, 14]
+    paths = problem.decode(repaired)
+    assert repaired[0].tolist()[:4] == [0, 1, 1, 6] and paths.length[0] == pytest.approx(4 + 2**0.5)
     # It waits as long as the goal can be reached in time.
-    assert repaired[1].tolist()[:5] == [0, 5, 10, 10, 10] and problem.decode(repaired).arrival.tolist() == [6, 8, 4]
+    assert repaired[1].tolist()[:5] == [0, 5, 10, 10, 10] and paths.arrival.tolist() == [6, 8, 4]
 
 
 def test_rows_of_paths_come_back():
