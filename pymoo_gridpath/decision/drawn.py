@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import Box
-from pymoo_gridpath.pictures import PALETTE, Line, Scene, page, png
+from pymoo_gridpath.pictures import INK, PALETTE, Line, Scene, page, png
 
 
 def drawn_box(trade_off) -> Box:
@@ -32,8 +30,8 @@ def scene_of(trade_off) -> Scene:
     """Return the map with all paths of a set, those with names in their colours."""
     problem = trade_off.problem
     groups: dict[int, list[tuple[str, str]]] = {}
-    for (name, index), color in zip(trade_off.named.items(), itertools.cycle(PALETTE), strict=False):
-        groups.setdefault(index, []).append((name, color))
+    for name, index in trade_off.named.items():
+        groups.setdefault(index, []).append((name, PALETTE.get(name, INK)))
     lines = [
         Line(trade_off[index].cells, same[0][1], ", ".join(name for name, _ in same) if trade_off.feasible else "not legal")
         for index, same in groups.items()
@@ -58,7 +56,7 @@ def html_of(trade_off) -> str:
 
 def record_scene(record) -> Scene:
     """Return the map with one path."""
-    line = Line(record.cells, PALETTE[0], f"path {record.index}")
+    line = Line(record.cells, PALETTE["shortest"], f"path {record.index}")
     ends = [tuple(cell.tolist()) for cell in record.cells[[0, -1]]]
     if record.grid is None:
         # Of a record made by hand nothing else is known.

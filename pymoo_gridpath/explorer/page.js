@@ -30,8 +30,8 @@ function element(kind, attributes = {}, ...children) {
 }
 
 const namesOf = (path) => names.filter((one) => one.path === path).map((one) => one.name);
-const tintOf = (k) => color(`name-${k % 6}`);
-const tinted = () => names.map((one, k) => ({ path: one.path, tint: tintOf(k) }));
+const tintOf = (name) => color(name) || color("named");
+const tinted = () => names.map(({ name, path }) => ({ path, tint: tintOf(name) }));
 const quantity = (column, value) => format(value) + (/^\w/.test(column.unit) ? " " : "") + column.unit;
 const told = (path) => objectives.map((column) => `${column.label} ${quantity(column, column.values[path])}`).join(", ");
 
@@ -167,9 +167,9 @@ function buildLayers() {
 }
 
 function buildNames() {
-  names.forEach(({ name, path }, k) => {
+  names.forEach(({ name, path }) => {
     const swatch = element("span", { className: "swatch" });
-    swatch.style.color = `var(--name-${k % 6})`;
+    swatch.style.color = `var(--${name}, var(--named))`;
     byId("names").append(element("button", { type: "button", value: path, onclick: () => choose(path) }, swatch, name));
   });
 }

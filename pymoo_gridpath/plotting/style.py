@@ -31,10 +31,10 @@ class NameStyle:
 
 # Dashes and markers tell the paths apart in grey print too.
 NAME_STYLES = {
-    "shortest": NameStyle(PALETTE[0], "-", "s"),
-    "safest": NameStyle(PALETTE[1], (0, (5, 1.6)), "D"),
-    "smoothest": NameStyle(PALETTE[2], (0, (1.2, 1.2)), "^"),
-    "knee": NameStyle(PALETTE[3], (0, (6, 1.5, 1.2, 1.5)), "o"),
+    "shortest": NameStyle(PALETTE["shortest"], "-", "s"),
+    "safest": NameStyle(PALETTE["safest"], (0, (5, 1.6)), "D"),
+    "smoothest": NameStyle(PALETTE["smoothest"], (0, (1.2, 1.2)), "^"),
+    "knee": NameStyle(PALETTE["knee"], (0, (6, 1.5, 1.2, 1.5)), "o"),
 }
 POTENTIAL = ["#ffffff", "#f3d9a4"]  # a list: of a tuple of two, matplotlib 3.8.0 takes the second for an opacity
 REFERENCE = "#5b5f66"
