@@ -303,8 +303,11 @@ for (const [id, zoom] of Object.entries(zooms)) {
 }
 document.addEventListener("keydown", onKey);
 window.addEventListener("hashchange", chooseLinked);
-new ResizeObserver(() => redraw("backdrop")).observe(map.canvas);
-new ResizeObserver(() => redraw("backdrop")).observe(front.canvas);
+// It also tells the sizes to begin with, for which all is drawn already.
+const sizes = new ResizeObserver(() => {
+  if (![map, ...charts].every((view) => fits(view.canvas))) redraw("backdrop");
+});
+for (const view of [map, ...charts]) sizes.observe(view.canvas);
 const dark = matchMedia("(prefers-color-scheme: dark)");
 dark.addEventListener("change", () => setTheme(dark.matches ? "dark" : "light"));
 byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
