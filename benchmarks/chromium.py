@@ -121,8 +121,7 @@ class Chromium:
         page.resize(width, height)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         page.call("Emulation.setEmulatedMedia", features=[scheme])
-        page.call("Page.navigate", url=url)
-        self.wait("Page.loadEventFired", session)
+        page.go(url)
         return page
 
 
@@ -135,6 +134,11 @@ class Page:
     def call(self, method: str, **parameters) -> dict:
         """Send a command to the tab."""
         return self.browser.call(method, self.session, **parameters)
+
+    def go(self, url: str) -> None:
+        """Go to another address and wait until it has loaded."""
+        self.call("Page.navigate", url=url)
+        self.browser.wait("Page.loadEventFired", self.session)
 
     def run(self, script: str) -> Any:
         """Return what a script says, as plain data; a promise is waited for."""

@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw
 
-# Of the paths with names, from Okabe and Ito's palette.
-COLORS = {"earliest": "#56B4E9", "shortest": "#0072B2", "safest": "#009E73", "smoothest": "#D55E00", "knee": "#CC3377"}
+# Colours of Okabe and Ito's palette, by what paths go by.
+PALETTE = {"shortest": "#0072B2", "safest": "#009E73", "smoothest": "#D55E00", "knee": "#CC3377", "earliest": "#56B4E9"}
 OCCUPIED, UNKNOWN, OTHERS, INK = "#3b3f45", "#b9bec6", "#8a8f98", "#111418"
 
 # The longer side of a picture is at most so many dots, and a cell is no larger than this.

@@ -8,7 +8,7 @@ from pymoo_gridpath.decision.measures import PathMeasures
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import Box
-from pymoo_gridpath.pictures import COLORS, Line, Scene, page, png
+from pymoo_gridpath.pictures import INK, PALETTE, Line, Scene, page, png
 
 
 def drawn_box(trade_off) -> Box:
@@ -31,7 +31,7 @@ def scene_of(trade_off) -> Scene:
     problem = trade_off.problem
     groups: dict[int, list[tuple[str, str]]] = {}
     for name, index in trade_off.named.items():
-        groups.setdefault(index, []).append((name, COLORS[name]))
+        groups.setdefault(index, []).append((name, PALETTE.get(name, INK)))
     lines = [
         Line(trade_off[index].cells, same[0][1], ", ".join(name for name, _ in same) if trade_off.feasible else "not legal")
         for index, same in groups.items()
@@ -56,7 +56,7 @@ def html_of(trade_off) -> str:
 
 def record_scene(record) -> Scene:
     """Return the map with one path."""
-    line = Line(record.cells, COLORS["shortest"], f"path {record.index}")
+    line = Line(record.cells, PALETTE["shortest"], f"path {record.index}")
     ends = [tuple(cell.tolist()) for cell in record.cells[[0, -1]]]
     if record.grid is None:
         # Of a record made by hand nothing else is known.

@@ -79,7 +79,10 @@ def load_json(path: str | os.PathLike[str], problem=None) -> TradeOffSet:
     except GridPathError as error:
         raise GridPathError(f"{shown}: {error}") from None
     except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
-        raise GridPathError(f"{shown}: the set cannot be made again ({visible(error)}), expected the file as written") from None
+        raise GridPathError(
+            f"{shown}: the set cannot be made again ({visible(error)}), expected the file as written, or the problem itself as "
+            f"load_json(path, problem)"
+        ) from None
 
 
 def _content(path: str | os.PathLike[str]) -> dict:
@@ -156,7 +159,8 @@ def _grid(content: dict) -> OccupancyGrid:
     if (runs < 0).any() or runs.sum(dtype=object) != shape[0] * shape[1]:
         raise GridPathError(f"occupied_runs is of another size than {shape[1]} x {shape[0]} cells, expected one of all cells")
     occupied = np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(shape)
-    options = {key: stated[key] for key in ("resolution", "origin", "corner_cutting", "name")}
+    takes = inspect.signature(OccupancyGrid).parameters
+    options = {key: value for key, value in stated.items() if key in takes and key not in ("occupied", "unknown")}
     grid = OccupancyGrid(occupied, **options)
     if grid.digest != stated["sha256"]:
         raise GridPathError("occupied_runs does not fit the checksum of the map, expected the file as written")

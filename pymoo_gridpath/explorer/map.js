@@ -11,14 +11,22 @@ function parts(hex) {
   return [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
 }
 
+/** Return how many dots a canvas has on the screen, across and up. */
+function dotsOf(canvas) {
+  const ratio = window.devicePixelRatio || 1;
+  return [canvas.clientWidth, canvas.clientHeight].map((length) => Math.max(1, Math.round(length * ratio)));
+}
+
+/** Whether a canvas has as many dots as on the screen. */
+function fits(canvas) {
+  const [width, height] = dotsOf(canvas);
+  return canvas.width === width && canvas.height === height;
+}
+
 /** Give a canvas as many dots as it has on the screen; return whether that changed. */
 function fit(canvas) {
-  const ratio = window.devicePixelRatio || 1;
-  const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
-  const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
-  if (canvas.width === width && canvas.height === height) return false;
-  canvas.width = width;
-  canvas.height = height;
+  if (fits(canvas)) return false;
+  [canvas.width, canvas.height] = dotsOf(canvas);
   return true;
 }
 

@@ -30,8 +30,8 @@ function element(kind, attributes = {}, ...children) {
 }
 
 const namesOf = (path) => names.filter((one) => one.path === path).map((one) => one.name);
-const tintOf = (k) => color(`name-${k % 6}`);
-const tinted = () => names.map((one, k) => ({ path: one.path, tint: tintOf(k) }));
+const tintOf = (name) => color(name) || color("named");
+const tinted = () => names.map(({ name, path }) => ({ path, tint: tintOf(name) }));
 const quantity = (column, value) => format(value) + (/^\w/.test(column.unit) ? " " : "") + column.unit;
 const told = (path) => objectives.map((column) => `${column.label} ${quantity(column, column.values[path])}`).join(", ");
 
@@ -167,9 +167,9 @@ function buildLayers() {
 }
 
 function buildNames() {
-  names.forEach(({ name, path }, k) => {
+  names.forEach(({ name, path }) => {
     const swatch = element("span", { className: "swatch" });
-    swatch.style.color = `var(--name-${k % 6})`;
+    swatch.style.color = `var(--${name}, var(--named))`;
     byId("names").append(element("button", { type: "button", value: path, onclick: () => choose(path) }, swatch, name));
   });
 }
@@ -303,8 +303,11 @@ for (const [id, zoom] of Object.entries(zooms)) {
 }
 document.addEventListener("keydown", onKey);
 window.addEventListener("hashchange", chooseLinked);
-new ResizeObserver(() => redraw("backdrop")).observe(map.canvas);
-new ResizeObserver(() => redraw("backdrop")).observe(front.canvas);
+// It also tells the sizes to begin with, for which all is drawn already.
+const sizes = new ResizeObserver(() => {
+  if (![map, ...charts].every((view) => fits(view.canvas))) redraw("backdrop");
+});
+for (const view of [map, ...charts]) sizes.observe(view.canvas);
 const dark = matchMedia("(prefers-color-scheme: dark)");
 dark.addEventListener("change", () => setTheme(dark.matches ? "dark" : "light"));
 byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));

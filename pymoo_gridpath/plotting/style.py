@@ -32,11 +32,11 @@ class NameStyle:
 
 # Dashes and markers tell the paths apart in grey print too.
 NAME_STYLES = {
-    "earliest": NameStyle(COLORS["earliest"], (0, (7, 1.2)), "v"),
-    "shortest": NameStyle(COLORS["shortest"], "-", "s"),
-    "safest": NameStyle(COLORS["safest"], (0, (5, 1.6)), "D"),
-    "smoothest": NameStyle(COLORS["smoothest"], (0, (1.2, 1.2)), "^"),
-    "knee": NameStyle(COLORS["knee"], (0, (6, 1.5, 1.2, 1.5)), "o"),
+    "earliest": NameStyle(PALETTE["earliest"], (0, (7, 1.2)), "v"),
+    "shortest": NameStyle(PALETTE["shortest"], "-", "s"),
+    "safest": NameStyle(PALETTE["safest"], (0, (5, 1.6)), "D"),
+    "smoothest": NameStyle(PALETTE["smoothest"], (0, (1.2, 1.2)), "^"),
+    "knee": NameStyle(PALETTE["knee"], (0, (6, 1.5, 1.2, 1.5)), "o"),
 }
 POTENTIAL = ["#ffffff", "#f3d9a4"]  # a list: of a tuple of two, matplotlib 3.8.0 takes the second for an opacity
 REFERENCE = "#5b5f66"

@@ -327,3 +327,11 @@ def test_a_notebook_shows_it(browser, tmp_path):
     assert page.complaints == [] and page.run("document.querySelector('iframe').title") == "Explorer of trade-off paths"
     assert html.escape("<script>") in explore(exact_set())._repr_html_()
     page.close()
+
+
+def test_a_window_of_another_size_is_drawn_anew(open_page):
+    page = open_page(exact_set(3))
+    page.resize(1000, 700)
+    page.run("(async () => { for (let k = 0; k < 5; k++) await new Promise(requestAnimationFrame); })()")
+    assert page.run("[map, ...charts].every((view) => fits(view.canvas))") and page.run("map.canvas.width") < 700
+    assert page.run("map.backdrop.width === map.canvas.width")
