@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import names_for
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.pictures import PALETTE
 from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
 from pymoo_gridpath.pictures import OTHERS as OTHERS
+from pymoo_gridpath.pictures import PALETTE
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.study.running.executor import StudyExecutor, describe
 from pymoo_gridpath.versions import versions
@@ -133,7 +134,7 @@ class DaskExecutor(StudyExecutor):
         trouble = f"no Dask scheduler answers at {self.address} within {self.timeout:g} s"
         address = re.fullmatch(r"(tcp|tls|ucx|wss?)://(\[[^]]+\]|[^/:]+):(\d+)/?", self.address)
         if address is None:
-            raise GridPathError(f"{self.address!r} is no address of a Dask scheduler, expected tcp://HOST:PORT")
+            raise GridPathError(f"{checks.shown(self.address)} is no address of a Dask scheduler, expected tcp://HOST:PORT")
         try:
             if address[1] == "tcp":
                 # A client that finds nobody goes on trying, and ends with a traceback when it is cleared away.

@@ -160,6 +160,8 @@ def seeds(value: object, where: Where) -> tuple[int, ...]:
             raise StudyError(f"{key_of(where)} has no count, expected such as {{ first = 100, count = 11 }}", where)
         first = whole(given.get("first", 1), (*where, "first"), 0, MAX_SEED - MAX_SEEDS)
         return tuple(range(first, first + whole(given["count"], (*where, "count"), 1, MAX_SEEDS)))
+    # An array without dimensions holds a number, and is no list of any.
+    value = value.tolist() if isinstance(value, np.ndarray) else value
     if isinstance(value, Collection) and not isinstance(value, str | bytes):
         return each_once(value, where, MAX_SEED)
     number = _plain(value)
