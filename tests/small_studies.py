@@ -74,8 +74,8 @@ def without_grids(plan: Plan) -> Plan:
     return dataclasses.replace(plan, problems=tuple(dataclasses.replace(item, grid=None) for item in plan.problems))
 
 
-class Bomb:
-    """Ends the process that unpickles it."""
+class Bomb(bytes):
+    """A grid that ends the process which unpickles it."""
 
     def __reduce__(self):
         return os._exit, (1,)
@@ -87,7 +87,7 @@ class Bomb:
 def with_bomb(plan: Plan, problem: int = -1) -> Plan:
     """Return a plan one of whose problems kills the process that it is handed to."""
     problems = list(plan.problems)
-    problems[problem] = dataclasses.replace(problems[problem], grid=Bomb())
+    problems[problem] = dataclasses.replace(problems[problem], grid=Bomb(problems[problem].grid or b""))
     return dataclasses.replace(plan, problems=tuple(problems))
 
 

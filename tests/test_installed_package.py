@@ -120,7 +120,7 @@ for name, operators, hint in (
     ("gredy", {}, "there is no algorithm 'gredy'; did you mean 'Greedy'?"),
     ("copiers", {}, "there is no algorithm 'copiers'; did you mean 'copier'?"),
     ("NSGA2", {"mutation": "shke"}, "there is no mutation 'shke'; did you mean 'shake'?"),
-    ("NSGA2", {"repair": "shake"}, "there is no repair 'shake'; expected one of PathRepair, EdgeFixing"),
+    ("NSGA2", {"repair": "shake"}, "there is no repair 'shake'; expected one of PathRepair, TimedRepair, EdgeFixing"),
     ("NSGA2", {"repair": "lost"}, "the operator 'lost' of the installed package cannot be imported from strangers:NoSuchThing"),
 ):
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
@@ -77,7 +79,12 @@ def test_they_are_drawn_with_who_moves(trade_off):
 
 
 def test_files_hold_the_cell_at_each_tick_and_who_moves(problem, trade_off, tmp_path):
-    content = load_json(trade_off.to_json(tmp_path / "set.json"))
+    path = trade_off.to_json(tmp_path / "set.json")
+    with pytest.raises(GridPathError, match=r"among obstacles that move, .* as load_json\(path, problem\)"):
+        load_json(path)
+    same = load_json(path, problem)
+    assert same.table() == trade_off.table() and same.meta == trade_off.meta
+    content = json.loads(path.read_text())
     assert content["paths"][0]["cells"] == trade_off[0].cells.tolist()
     assert content["settings"]["movers"][0][:3] == [[3, 0], [3, 1], [3, 2]]
     again = TradeOffSet.from_genes(problem, [record["genes"] for record in content["paths"]])

@@ -146,7 +146,7 @@ def test_fronts_of_costs_of_moves_equal_enumeration_on_500_grids(part):
                 for point, *given in zip(found.F, cells, out["turn"], strict=True):
                     equal = np.isclose(scores, point, rtol=1e-9, atol=1e-8).all(axis=1)
                     assert given == min(others[equal].tolist()), label
-    assert max(sizes) >= 4 and np.mean(np.array(sizes) > 1) > 0.15
+    assert max(sizes) >= 3 and np.mean(np.array(sizes) > 1) > 0.15
 
 
 def test_fronts_of_short_rows_equal_enumeration():
