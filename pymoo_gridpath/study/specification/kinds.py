@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
@@ -10,7 +9,7 @@ from pymoo.core.algorithm import Algorithm
 from pymoo_gridpath.algorithms import find_algorithm
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
 from pymoo_gridpath.operators.sets import MEMBERS
-from pymoo_gridpath.planners import Planner
+from pymoo_gridpath.planners import PLANNERS, Planner
 from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations import REPRESENTATIONS, Representation
@@ -20,6 +19,8 @@ from pymoo_gridpath.study.specification.own import Kind
 OBJECTIVE = Kind("objective", Objective, OBJECTIVES)
 REPRESENTATION = Kind("representation", Representation, REPRESENTATIONS)
 ALGORITHM = Kind("algorithm", Algorithm, {})
+
+_REGISTRIES = {Objective: OBJECTIVES, Planner: PLANNERS, Representation: REPRESENTATIONS}
 
 
 def objective_entry(form: Any) -> Any:
@@ -56,16 +57,9 @@ def is_of_paper(content: Any) -> bool:
     return of_package(Representation)[content].paper if isinstance(content, str) else content["paper"]
 
 
-@functools.cache
 def of_package(base: Any) -> dict[str, Any]:
-    """Return the classes of this package by name, for those who read what was stored: a registry may import others."""
-    found, queue = {}, [base]
-    while queue:
-        cls = queue.pop()
-        queue += cls.__subclasses__()
-        if own.is_of_package(cls) and isinstance(getattr(cls, "name", None), str):
-            found[cls.name] = cls
-    return found
+    """Return the registered classes of this package by name, for those who read what was stored: none is imported for it."""
+    return {name: cls for name, cls in _REGISTRIES[base].registered().items() if own.is_of_package(cls)}
 
 
 def operators_of_package() -> dict[str, type]:

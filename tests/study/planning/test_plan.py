@@ -15,12 +15,15 @@ from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.errors import StudyError
 from pymoo_gridpath.maps import load_map, read_scen
+from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.operators import paper_operators, path_operators
 from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.planning import canonical
 from pymoo_gridpath.study.planning.build import build_grid, build_problem
 from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan, has_own_budget
+from pymoo_gridpath.study.specification.kinds import of_package
 from pymoo_gridpath.study.specification.operators import make_operator
 from pymoo_gridpath.study.specification.study import AlgorithmSpec, ProblemSpec, Study
 from pymoo_gridpath.study.specification.toml_file import load_study
@@ -481,3 +484,9 @@ def test_every_usable_algorithm_can_be_studied(name):
     parameters = {"ref_points": [[10, 1], [12, 0.5]]} if name in ("RNSGA2", "RNSGA3") else {}
     plan = make([problem], [{"algorithm": name, "pop_size": 20, "parameters": parameters}])
     assert plan.algorithms[0].spec["algorithm"] == name
+
+
+def test_what_was_stored_is_looked_for_among_what_has_a_name():
+    """A coding or an objective that is made for one problem, such as paths in time, is none that a study names."""
+    assert set(of_package(Representation)) == {"integer", "binary", "mixed", "absolute", "cells"}
+    assert set(of_package(Objective)) == {"length", "vulnerability", "turn"}
