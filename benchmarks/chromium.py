@@ -1,7 +1,7 @@
 """A Chromium of this machine, driven by its DevTools protocol over two pipes; nothing else is needed for it.
 
 with Chromium() as browser:
-    page = browser.open("file:///tmp/page.html")
+    page = browser.open("file:///home.html")
     print(page.run("document.title"))
 """
 
