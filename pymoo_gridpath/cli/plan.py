@@ -20,6 +20,7 @@ from pymoo_gridpath.cli.arguments import (
     positive,
 )
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
+from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
 
@@ -90,6 +91,7 @@ def add_plan_command(commands) -> None:
         metavar="DIR",
         help="where files go (default: gridpath-out)",
     )
+    add_waypoint_options(plan)
     plan.add_argument("--html", type=html_file, metavar="FILE", help="write a page to choose a path from")
     plan.add_argument("--show", action="store_true", help="draw the map with the paths on a terminal that can")
     plan.add_argument("--units", choices=("cells", "m"), default="cells", help="axes of the map figure (default: cells)")
@@ -113,6 +115,7 @@ def _plan(arguments) -> int:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
     map_name = arguments.map or DEFAULT_MAP
     grid = load(map_name, arguments)
+    check_waypoint_options(arguments, grid)
     start, goal = grid.check_query(*ends_of(grid, query_of(map_name), arguments.start, arguments.goal, option="--"))
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
@@ -165,6 +168,7 @@ def _plan(arguments) -> int:
     if len(results) > 1:
         print(f"{sum(_n_legal(result.algorithm) > 0 for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(visible(file) for file in files), flush=True)
+    write_waypoints(trade_off, arguments)
     history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
     figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
     print("figures: " + ", ".join(visible(file) for file in figures))
