@@ -32,9 +32,6 @@ class Cells:
         """Occupied cells, bool, shape (height, width), read-only."""
         return self._occupied
 
-    original = property(lambda self: self)
-    robot_radius = 0.0
-
     @property
     def unknown(self) -> np.ndarray | None:
         """Cells of which the map did not say whether they are free, bool, shape (height, width), read-only, or None."""
