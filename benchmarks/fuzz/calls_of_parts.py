@@ -57,7 +57,11 @@ def _grids(w: World) -> dict[str, Call]:
                 "moves": 4,
             },
         ),
-        "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
+        "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.0, "footprint": [(0.6, 0.2), (-0.6, 0.2), (0.0, -0.4)]}),
+        "OccupancyGrid.grown_from": (
+            grid.grown_from,
+            {"original": grid, "robot_radius": 0.5, "footprint": [(0.5, 0.0), (0.0, 0.2), (-0.1, -0.2)]},
+        ),
         "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
         "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
         "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),

@@ -62,11 +62,14 @@ def json_text(trade_off) -> str:
         "labels": {objective.name: objective.label for objective in problem.objectives},
         "feasible": trade_off.feasible,
     }
-    runs = json.dumps(runs_of(problem.grid.occupied))
+    grids = {"occupied_runs": problem.grid}
+    if problem.grid.original is not problem.grid:
+        grids["original_runs"] = problem.grid.original
+    runs = "".join(f' "{key}": {json.dumps(runs_of(grid.occupied))},\n' for key, grid in grids.items())
     records = [json.dumps(plain(record.as_dict()), allow_nan=False) for record in trade_off]
     lines = ",\n".join(f"  {record}" for record in records)
     start = json.dumps(plain(head), allow_nan=False, indent=1).removesuffix("\n}")
-    return f'{start},\n "occupied_runs": {runs},\n "paths": [\n{lines}\n ]\n}}\n'
+    return f'{start},\n{runs} "paths": [\n{lines}\n ]\n}}\n'
 
 
 def runs_of(occupied: np.ndarray) -> list[int]:
