@@ -122,6 +122,10 @@ def _problems(w: World) -> dict[str, Call]:
         ),
         "GridPathProblem.decode": (problem.decode, {"X": w.rows(problem)}),
         "GridPathProblem.evaluate": (partial(problem.evaluate, return_values_of=["F", "turn"]), {"X": w.rows(problem)}),
+        "GridPathProblem.from_metres": (
+            GridPathProblem.from_metres,
+            {"grid": w.grid, **{end: tuple(w.grid.to_metres(w.query[end])) for end in w.query}, "goal_tolerance": 0.5},
+        ),
         "GridPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
         "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),

@@ -15,7 +15,7 @@ from pymoo_gridpath.decision.provenance import describe_problem, plain
 from pymoo_gridpath.errors import GridPathError, counted
 
 FORMAT = "pymoo_gridpath trade-off set"
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 
 _HEADERS = {
     "length": "length",
@@ -24,6 +24,7 @@ _HEADERS = {
     "turn": "turn [deg]",
     "interfering_cells": "interfering",
     "clearance": "clearance",
+    "clearance_m": "clearance [m]",
 }
 
 

@@ -17,9 +17,10 @@ from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
 from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.problems.standing import StandingProblem
 from pymoo_gridpath.representations import REPRESENTATIONS
 
-_MEASURES = ("length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance")
+_MEASURES = ("length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance", "clearance_m")
 _FIELDS = ("cells", "names", "genes", "objectives", *_MEASURES)
 
 # A file of a few bytes shall not take more memory than any real map.
@@ -185,6 +186,9 @@ def _problem(content: dict, grid: OccupancyGrid, start, goal) -> GridPathProblem
             "itself as load_json(path, problem)"
         )
     objectives = [_objective(stated, content["labels"]) for stated in settings["objectives"]]
+    penalty = settings["penalty"] if settings["obstacles"] != "constraint" else None
+    if start == goal:
+        return StandingProblem(grid, start, objectives, settings["obstacles"], penalty, settings["potential_limit"])
     cls: Any = REPRESENTATIONS[checks.known("representation", settings["representation"], REPRESENTATIONS)]
     takes = inspect.signature(cls).parameters
     options = {key: settings[key] for key in ("axis", "max_cells") if key in takes and settings[key] is not None}
@@ -195,7 +199,7 @@ def _problem(content: dict, grid: OccupancyGrid, start, goal) -> GridPathProblem
         cls(grid, start, goal, **options),
         objectives,
         settings["obstacles"],
-        settings["penalty"] if settings["obstacles"] != "constraint" else None,
+        penalty,
         settings["potential_limit"],
     )
 

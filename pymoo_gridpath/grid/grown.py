@@ -39,9 +39,9 @@ class GrownCells(Cells):
     def original(self) -> Self:
         """The grid from whose obstacles those of this one were grown, of the same shape and place; itself where none were.
 
-        However often obstacles grew, it is the first. `crop`, `downsample` and `replace` do to it what they do to the grid, but
-        ``replace(occupied=...)`` makes cells that were grown from nothing. As the unknown cells, it is no part of what makes two
-        grids equal, nor of the `digest`.
+        However often obstacles grew, it is the first. `crop`, `downsample` and `replace` do to it what they do to the grid,
+        but ``replace(occupied=...)`` makes cells that were grown from nothing. As the unknown cells, it is no part of what
+        makes two grids equal, nor of the `digest`.
         """
         return self if self._growth is None else self._growth.original
 
@@ -59,9 +59,12 @@ class GrownCells(Cells):
         """Corners (x, y) of the robot in metres, if obstacles grew by its footprint, and by nothing else."""
         return None if self._growth is None else self._growth.footprint
 
-    def grown_from(
-        self, original: Self, robot_radius: float, footprint: Sequence[Sequence[float]] | None = None
-    ) -> Self:
+    @property
+    def grown_cells(self) -> np.ndarray | None:
+        """Cells that are occupied because obstacles grew, bool, shape (height, width); None where none did."""
+        return None if self._growth is None else self._occupied & ~self._growth.original.occupied
+
+    def grown_from(self, original: Self, robot_radius: float, footprint: Sequence[Sequence[float]] | None = None) -> Self:
         """Return this grid as one whose obstacles are those of another, grown; for what was inflated elsewhere.
 
         Parameters

@@ -17,7 +17,7 @@ from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridError, UnreachableError, visible
 from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_pose, pairs
 from pymoo_gridpath.grid.box import Box
-from pymoo_gridpath.grid.grown import Growth, GrownCells
+from pymoo_gridpath.grid.grown import GrownCells, Growth
 from pymoo_gridpath.grid.occupancy_values import blocks_of, cells_of_occupancy, decimal_of
 from pymoo_gridpath.neighbourhood import steps_in_words
 
@@ -210,13 +210,14 @@ class OccupancyGrid(GrownCells):
         )
 
     def _repr_png_(self) -> bytes:
-        return pictures.png(pictures.Scene(self._occupied, self._unknown))
+        return pictures.png(pictures.Scene(self._occupied, self._unknown, grown=self.grown_cells))
 
     def _repr_html_(self) -> str:
         rows = {
             "cells": f"{self.width} x {self.height}",
             "metres a cell": f"{self._resolution:g}",
             "occupied": f"{self.n_occupied} ({self.n_occupied / self._occupied.size:.0%})",
+            **({} if self.original is self else {"of these grown": f"{self.n_occupied - self.original.n_occupied}"}),
             "steps": steps_in_words(self._moves, self._corner_cutting),
         }
         return pictures.page(self._repr_png_(), visible(self._name), rows, "map, occupied cells dark")

@@ -133,8 +133,8 @@ def test_runs_alternate_from_free_cells_on(occupied):
         ("[" * 10**5, "nested too deep"),
         ("[]", "no trade-off set"),
         ('{"format": "pymoo_gridpath trade-off set", "format_version": 99}', "format_version"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 2, "paths": []}', "paths"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 2, "paths": [{"cells": []}]}', "path 0 has no 'names'"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 3, "paths": []}', "paths"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 3, "paths": [{"cells": []}]}', "path 0 has no 'names'"),
     ],
 )
 def test_a_file_that_is_no_set_is_refused(text, word, tmp_path):

@@ -40,7 +40,7 @@ def test_the_original_is_kept(clone):
 
 def test_what_grew_is_planned_on_and_known_by_its_own_cells():
     plain = UNGROWN.replace(occupied=GROWN.occupied)
-    assert GROWN == plain and hash(GROWN) == hash(plain) and GROWN.digest == plain.digest != UNGROWN.digest
+    assert plain == GROWN and hash(GROWN) == hash(plain) and GROWN.digest == plain.digest != UNGROWN.digest
     assert plain.original is plain and plain.robot_radius == 0.0
 
 
@@ -94,7 +94,11 @@ def test_a_map_inflated_elsewhere_is_told_its_original():
         (UNGROWN, -1.0, "robot_radius is -1.0, expected metres, zero or more"),
         (UNGROWN.replace(resolution=1.0), 0.1, r"the original grid has the resolution 1.0, expected that of the grid, 0.5"),
         (UNGROWN.crop(Box(0, 0, 2, 2)), 0.1, "the original grid has the shape"),
-        (UNGROWN.replace(occupied=np.ones((4, 5))), 0.1, r"\(0, 0\) is occupied on the original grid and free on the grown one"),
+        (
+            UNGROWN.replace(occupied=np.ones((4, 5))),
+            0.1,
+            r"\(0, 0\) is occupied on the original grid and free on the grown one",
+        ),
     ]:
         with pytest.raises(GridError, match=message):
             given_.grown_from(original, radius)
@@ -128,9 +132,7 @@ def test_no_heading_of_a_footprint_touches_an_obstacle(seed, spokes, resolution)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", GridPathWarning)
         grown = OccupancyGrid(occupied, resolution).inflate(footprint=corners)
-    squares = [
-        resolution * (np.array([x, y]) + [(0, 0), (1, 0), (1, 1), (0, 1)]) for y, x in np.argwhere(occupied)
-    ]
+    squares = [resolution * (np.array([(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)])) for y, x in np.argwhere(occupied)]
     free = np.argwhere(~grown.occupied)
     for y, x in free[rng.permutation(len(free))[:4]]:
         centre = resolution * (np.array([x, y]) + 0.5)
