@@ -108,9 +108,7 @@ def main(argv: list[str] | None = None) -> int:
             seconds += time.process_time() - before
             least, between = to_spare(record, trees[key[0]], 0.5)
             worst, longer = min(worst, least), max(longer, made.length - made.before.length)
-            measures = [
-                (one.length_m, one.turn, len(one), *one.clearance_m) for one in (made.before, made)
-            ]
+            measures = [(one.length_m, one.turn, len(one), *one.clearance_m) for one in (made.before, made)]
             rows.append((key[0], name, *measures[0], *measures[1]))
     print(f"{n} queries, {len(rows)} paths, {1000 * seconds / len(rows):.1f} ms of processor time a path")
     print("map          path      length [m]     turn [deg]     points      least clearance [m]  mean clearance [m]")

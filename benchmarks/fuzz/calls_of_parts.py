@@ -57,7 +57,11 @@ def _grids(w: World) -> dict[str, Call]:
                 "moves": 4,
             },
         ),
-        "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
+        "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.0, "footprint": [(0.6, 0.2), (-0.6, 0.2), (0.0, -0.4)]}),
+        "OccupancyGrid.grown_from": (
+            grid.grown_from,
+            {"original": grid, "robot_radius": 0.5, "footprint": [(0.5, 0.0), (0.0, 0.2), (-0.1, -0.2)]},
+        ),
         "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
         "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
         "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),
@@ -124,6 +128,10 @@ def _problems(w: World) -> dict[str, Call]:
         ),
         "GridPathProblem.decode": (problem.decode, {"X": w.rows(problem)}),
         "GridPathProblem.evaluate": (partial(problem.evaluate, return_values_of=["F", "turn"]), {"X": w.rows(problem)}),
+        "GridPathProblem.from_metres": (
+            GridPathProblem.from_metres,
+            {"grid": w.grid, **{end: tuple(w.grid.to_metres(w.query[end])) for end in w.query}, "goal_tolerance": 0.5},
+        ),
         "GridPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
         "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),

@@ -12,7 +12,6 @@ from pymoo_gridpath.cli.arguments import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
-    cell,
     folder,
     html_file,
     natural,
@@ -20,6 +19,7 @@ from pymoo_gridpath.cli.arguments import (
     positive,
 )
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
+from pymoo_gridpath.cli.query import add_query, ends, grown
 from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
@@ -38,9 +38,7 @@ def add_plan_command(commands) -> None:
     plan = commands.add_parser("plan", help="plan the trade-off paths of a query", description=_plan.__doc__)
     plan.set_defaults(run=_plan)
     plan.add_argument("map", nargs="?", metavar="MAP", help=f"map file or name of a shipped map (default: {DEFAULT_MAP})")
-    plan.add_argument("--start", type=cell, metavar="X,Y", help="start cell; x to the right, y up, from 0,0 at the bottom left")
-    plan.add_argument("--goal", type=cell, metavar="X,Y", help="goal cell")
-    plan.add_argument("--radius", type=float, default=0.0, metavar="M", help="robot radius in metres (default: a point)")
+    add_query(plan)
     add_reading(plan)
     search = plan.add_argument_group("search")
     search.add_argument(
@@ -106,9 +104,10 @@ def _plan(arguments) -> int:
     from pymoo_gridpath.decision.drawn import scene_of
     from pymoo_gridpath.decision.provenance import describe_source
     from pymoo_gridpath.explorer import save_page
-    from pymoo_gridpath.maps.queries import check_grown, ends_of, query_of
+    from pymoo_gridpath.maps import query_of
     from pymoo_gridpath.plotting import save_figures
     from pymoo_gridpath.problems import GridPathProblem
+    from pymoo_gridpath.problems.standing import StandingProblem
     from pymoo_gridpath.representations import default_representation
 
     if arguments.obstacles == "limit" and arguments.potential_limit is None:
@@ -116,29 +115,28 @@ def _plan(arguments) -> int:
     map_name = arguments.map or DEFAULT_MAP
     grid = load(map_name, arguments)
     check_waypoint_options(arguments, grid)
-    start, goal = grid.check_query(*ends_of(grid, query_of(map_name), arguments.start, arguments.goal, option="--"))
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
-    grid = grid.inflate(arguments.radius)
-    check_grown(grid, arguments.radius, start, goal)
+    grid = grown(grid, arguments)
+    start, goal = ends(grid, query_of(map_name), arguments)
     representation = arguments.representation or default_representation(grid.corner_cutting, arguments.axis)
     name = arguments.algorithm or ("nsga2" if len(arguments.objectives) > 1 else "ga")
     spec = find_algorithm(name, len(arguments.objectives))
     _settle_options(spec, name, arguments)
     arguments.needs = _needed(grid, start, representation, arguments, spec.reference)
-    problem = GridPathProblem(
-        grid,
-        start,
-        goal,
-        representation=representation,
-        objectives=arguments.objectives,
-        obstacles=arguments.obstacles or "penalty",
-        penalty=arguments.penalty,
-        potential_limit=arguments.potential_limit,
-        axis=arguments.axis,
-    )
-    algorithm = _algorithm(name, spec, problem, arguments)
-    if not COMPILED and (isinstance(spec, type) or not problem.representation.paper):
+    settings = {
+        "objectives": arguments.objectives,
+        "obstacles": arguments.obstacles or "penalty",
+        "penalty": arguments.penalty,
+        "potential_limit": arguments.potential_limit,
+    }
+    standing = start == goal
+    if standing:
+        problem = StandingProblem(grid, start, **settings)
+    else:
+        problem = GridPathProblem(grid, start, goal, representation, axis=arguments.axis, **settings)
+    algorithm = None if standing else _algorithm(name, spec, problem, arguments)
+    if not COMPILED and not standing and (isinstance(spec, type) or not problem.representation.paper):
         print(
             "numba is not installed, so the search runs as plain Python, many times slower; pip install 'pymoo_gridpath[fast]'",
             file=sys.stderr,
@@ -149,16 +147,16 @@ def _plan(arguments) -> int:
     if unknown is not None:
         print(f"unknown: {unknown}", flush=True)
     with _StopOnCtrlC() as stop:
-        results = _search(problem, name, spec, algorithm, arguments, stop)
+        results = [] if standing else _search(problem, name, spec, algorithm, arguments, stop)
         stop.searching = False
-        if not any(len(result.pop) for result in results):
+        if results and not any(len(result.pop) for result in results):
             say(f"no path was found: {results[0].message}")
             return EXIT_FAILED
-        trade_off, files = _write_paths(results, arguments, name, source, stop.requested)
+        trade_off, files = _write_paths(problem, results, arguments, name, source, stop.requested)
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
-    elif results[0].success is False:
+    elif results and results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
     print(trade_off.table(max_rows=MAX_ROWS))
     if arguments.show:
@@ -255,17 +253,20 @@ def _n_legal(algorithm) -> int:
     return Members(algorithm).n_legal
 
 
-def _write_paths(results, arguments, name: str, source: dict, interrupted: bool):
-    """Return the trade-off set of the runs, and the files that it was written to."""
+def _write_paths(problem, results, arguments, name: str, source: dict, interrupted: bool):
+    """Return the trade-off set of the runs, and the files that it was written to; without a run, the robot stays."""
     from pymoo_gridpath.decision import TradeOffSet
 
     settings = {
-        "algorithm": {"name": name},
-        "robot_radius": arguments.radius,
+        "algorithm": {"name": name if results else None},
+        "robot_radius": problem.grid.robot_radius,
         "source_map": source,
         "interrupted": interrupted,
     }
-    trade_off = TradeOffSet.from_results(results, settings=settings)
+    if results:
+        trade_off = TradeOffSet.from_results(results, settings=settings)
+    else:
+        trade_off = TradeOffSet.from_genes(problem, problem.row, settings)
     files = [trade_off.to_csv(arguments.output / "paths.csv"), trade_off.to_json(arguments.output / "paths.json")]
     return trade_off, files
 

@@ -38,7 +38,7 @@ def scene_of(trade_off) -> Scene:
     ]
     others = [record.cells for record in trade_off if record.index not in groups]
     grid = problem.grid
-    scene = Scene(grid.occupied, grid.unknown, others, lines, problem.start, problem.goal)
+    scene = Scene(grid.occupied, grid.unknown, others, lines, problem.start, problem.goal, grid.grown_cells)
     return scene.cropped(*drawn_box(trade_off))
 
 
@@ -63,7 +63,7 @@ def record_scene(record) -> Scene:
         low, high = record.cells.min(axis=0), record.cells.max(axis=0) + 1
         return Scene(np.zeros((high[1], high[0]), dtype=bool), None, [], [line], *ends).cropped(*low, *high)
     grid = record.grid
-    return Scene(grid.occupied, grid.unknown, [], [line], *ends).cropped(*grid.box_of(ends[0]))
+    return Scene(grid.occupied, grid.unknown, [], [line], *ends, grid.grown_cells).cropped(*grid.box_of(ends[0]))
 
 
 def record_html(record) -> str:

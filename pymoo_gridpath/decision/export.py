@@ -15,7 +15,7 @@ from pymoo_gridpath.decision.provenance import describe_problem, plain
 from pymoo_gridpath.errors import GridPathError, counted
 
 FORMAT = "pymoo_gridpath trade-off set"
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 
 _HEADERS = {
     "length": "length",
@@ -24,6 +24,7 @@ _HEADERS = {
     "turn": "turn [deg]",
     "interfering_cells": "interfering",
     "clearance": "clearance",
+    "clearance_m": "clearance [m]",
 }
 
 
@@ -62,11 +63,14 @@ def json_text(trade_off) -> str:
         "labels": {objective.name: objective.label for objective in problem.objectives},
         "feasible": trade_off.feasible,
     }
-    runs = json.dumps(runs_of(problem.grid.occupied))
+    grids = {"occupied_runs": problem.grid}
+    if problem.grid.original is not problem.grid:
+        grids["original_runs"] = problem.grid.original
+    runs = "".join(f' "{key}": {json.dumps(runs_of(grid.occupied))},\n' for key, grid in grids.items())
     records = [json.dumps(plain(record.as_dict()), allow_nan=False) for record in trade_off]
     lines = ",\n".join(f"  {record}" for record in records)
     start = json.dumps(plain(head), allow_nan=False, indent=1).removesuffix("\n}")
-    return f'{start},\n "occupied_runs": {runs},\n "paths": [\n{lines}\n ]\n}}\n'
+    return f'{start},\n{runs} "paths": [\n{lines}\n ]\n}}\n'
 
 
 def runs_of(occupied: np.ndarray) -> list[int]:

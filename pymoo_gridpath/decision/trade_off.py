@@ -63,6 +63,11 @@ class PathRecord:
     clearance : float
         Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid. Of a path in time
         also from those of obstacles that move, at the same tick.
+    clearance_m : float
+        Least distance in metres between the robot on its way and the map's own obstacles, those of `OccupancyGrid.original`: of
+        the straight lines through the centres of the cells from the nearest edge of an occupied cell, less the `robot_radius`.
+        It is ``inf`` on an empty map, and never below 0 of a legal path on a grid that was inflated once, unless corners may be
+        cut. Obstacles that move of paths in time are not among them.
     objectives : dict of str to float
         The plain objectives of the problem.
     genes : numpy.ndarray, shape (n_var,)
@@ -83,6 +88,7 @@ class PathRecord:
     turn: float
     interfering_cells: int
     clearance: float
+    clearance_m: float
     objectives: dict[str, float]
     genes: np.ndarray = field(repr=False)
     grid: OccupancyGrid | None = field(default=None, repr=False)
@@ -153,7 +159,7 @@ class TradeOffSet:
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
         ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
-        [cells] and every other objective of the problem by its name.
+        [cells], ``clearance_m`` and every other objective of the problem by its name; see `PathRecord`.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -275,6 +281,7 @@ class TradeOffSet:
             "clearance": np.array([field.take(cells @ (1, grid.width)).min() for cells in self._cells]),
         }
         found["clearance"] = np.minimum(found["clearance"], self.paths.mover_distance)
+        found["clearance_m"] = measures.clearance_m(self._cells)
         for name, values in zip(self.objective_names, self.F.T, strict=True):
             found.setdefault(name, values)
         return found
@@ -358,6 +365,7 @@ class TradeOffSet:
             turn=value["turn"],
             interfering_cells=value["interfering_cells"],
             clearance=value["clearance"],
+            clearance_m=value["clearance_m"],
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
             grid=self.problem.grid,
@@ -399,7 +407,7 @@ class TradeOffSet:
         them: under a potential limit, and among obstacles that move.
         """
         others = self.problem.potential_limit is not None or self.problem.representation.timed
-        if self.least_length is None or not self.feasible or others:
+        if not self.least_length or not self.feasible or others:
             return ""
         excess = float(self.measures["length"].min()) / self.least_length - 1.0
         if excess <= _MUCH_LONGER:

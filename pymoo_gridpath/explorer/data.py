@@ -37,8 +37,9 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     dict
         ``map`` (name, size in cells, corner: the cell of the whole map that is (0, 0) here, resolution or None, unit, origin),
         ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, values with None for infinity), ``names`` (name
-        and path), ``occupied`` (a bit a cell, row by row from the bottom), ``field`` (0 to 255, or None), ``counts``,
-        ``starts`` and ``steps`` (see `packed_paths`), ``waypoints`` (see `packed_waypoints`), and texts.
+        and path), ``occupied`` and ``grown`` (a bit a cell, row by row from the bottom; which of the first are so because
+        obstacles grew, or None), ``field`` (0 to 255, or None), ``counts``, ``starts`` and ``steps``
+        (see `packed_paths`), ``waypoints`` (see `packed_waypoints`), and texts.
     """
     problem = trade_off.problem
     box = drawn_box(trade_off)
@@ -65,10 +66,17 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "columns": _columns(trade_off, resolution),
         "names": [{"name": name, "path": k} for name, k in trade_off.named.items()] if trade_off.feasible else [],
         "occupied": packed(np.packbits(grid.occupied)),
+        "grown": None if grid.grown_cells is None else packed(np.packbits(grid.grown_cells)),
+        "grown_label": _grown_label(problem.grid),
         "field": None if field is None else packed(field),
         **packed_paths(cells),
         "waypoints": packed_waypoints(trade_off),
     }
+
+
+def _grown_label(grid: OccupancyGrid) -> str:
+    """Return what the cells are called in which a robot would touch an obstacle."""
+    return f"Too near for {'its radius' if grid.footprint is None else 'its footprint'} of {grid.robot_radius:.3g} m"
 
 
 def resolution_of(grid: OccupancyGrid) -> float | None:

@@ -151,9 +151,15 @@ function buildAxes() {
 }
 
 function buildLayers() {
-  const labels = { occupied: "Obstacles", field: page.field_label, others: "Other paths", named: "Named paths" };
+  const labels = {
+    occupied: "Obstacles",
+    grown: page.grown_label,
+    field: page.field_label,
+    others: "Other paths",
+    named: "Named paths",
+  };
   for (const [layer, label] of Object.entries(labels)) {
-    if ((layer === "field" && !page.field) || (layer === "named" && !names.length)) continue;
+    if ((layer in page && !page[layer]) || (layer === "named" && !names.length)) continue;
     const box = element("input", {
       type: "checkbox",
       checked: map.layers[layer],

@@ -73,7 +73,10 @@ def grid_of_message(
     except AttributeError:
         expected = "a nav_msgs/OccupancyGrid with info and data"
         raise GridError(f"message is {checks.shown(message)}, expected {expected}") from None
-    width, height = (checks.whole(f"info.{key}", value, 1, error=GridError) for key, value in zip(("width", "height"), (width, height), strict=True))
+    width, height = (
+        checks.whole(f"info.{key}", value, 1, error=GridError)
+        for key, value in zip(("width", "height"), (width, height), strict=True)
+    )
     data = checks.array("data", data, (None,), "iu", expected="whole numbers from -1 to 100, one a cell", error=GridError)
     if len(data) != width * height:
         raise GridError(f"data has {len(data):,} values, expected {width} x {height} = {width * height:,}")

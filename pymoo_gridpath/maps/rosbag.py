@@ -87,9 +87,7 @@ def _library(path) -> tuple[Any, Any]:
         reader = importlib.import_module("rosbags.highlevel").AnyReader
         typesys = importlib.import_module("rosbags.typesys")
     except ImportError:
-        raise MapError(
-            path, "rosbags is not installed, expected it for bags; pip install 'pymoo_gridpath[ros]'"
-        ) from None
+        raise MapError(path, "rosbags is not installed, expected it for bags; pip install 'pymoo_gridpath[ros]'") from None
     return reader, typesys.get_typestore(typesys.Stores.LATEST)
 
 

@@ -40,6 +40,8 @@ def plot_map(
 ) -> Axes:
     """Draw a grid: occupied cells dark, over the obstacles' potential in a light colour.
 
+    Of cells that are occupied because obstacles grew, see `OccupancyGrid.inflate`, the colour is another one.
+
     Parameters
     ----------
     grid : OccupancyGrid
@@ -93,7 +95,7 @@ def plot_paths(
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the chosen paths of a trade-off set on their map.
+    """Draw the chosen paths of a trade-off set on their map, where obstacles that grew are told from what they were.
 
     Of a large map of which little can be reached from the start, that part is drawn, see `OccupancyGrid.box_of`. Of paths in
     time the ways of the obstacles that move are drawn until the last path arrives, with a square where each is at tick 0; who
@@ -176,6 +178,10 @@ def _draw_cells(ax: Axes, grid: OccupancyGrid, field: np.ndarray | None, units: 
     share = np.zeros(grid.shape) if field is None or top <= 0 else np.clip(field / top, 0.0, 1.0)
     image = colors(share)[..., :3]
     image[grid.occupied] = to_rgb(style.OCCUPIED)
+    near = grid.grown_cells
+    if near is not None and near.any():
+        image[near] = to_rgb(style.GROWN)
+        ax.scatter([], [], marker="s", color=style.GROWN, label="too near for the robot")
     frame = _cells_to_axes(grid, units, box or grid.whole)
     # Between the image's cell coordinates and the Axes', so that a turned map needs no resampling here.
     width, height = grid.width, grid.height
@@ -301,7 +307,9 @@ def _draw_legend(ax: Axes, grid: OccupancyGrid) -> None:
     if not handles:
         return
     # Chosen paths first, then the ends, then the rest.
-    order = sorted(range(len(labels)), key=lambda k: 2 if labels[k].startswith("other") else labels[k] in ("start", "goal"))
+    order = sorted(
+        range(len(labels)), key=lambda k: 2 if labels[k].startswith(("other", "too")) else labels[k] in ("start", "goal")
+    )
     handles, labels = [handles[k] for k in order], [labels[k] for k in order]
     if _is_wide(grid):
         columns = len(handles) if len(handles) <= 4 else (len(handles) + 1) // 2

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import names_for
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.pictures import GROWN as GROWN
 from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
 from pymoo_gridpath.pictures import OTHERS as OTHERS
 from pymoo_gridpath.pictures import PALETTE

@@ -67,9 +67,7 @@ class Waypoints:
     [[0.25, 0.25], [0.75, 0.25], [1.25, 0.25], [1.75, 0.25], [1.75, 0.75], [1.75, 1.25]]
     """
 
-    def __init__(
-        self, grid: OccupancyGrid, cells: ArrayLike, before: Waypoints | None = None, nearest: Nearest | None = None
-    ):
+    def __init__(self, grid: OccupancyGrid, cells: ArrayLike, before: Waypoints | None = None, nearest: Nearest | None = None):
         self.grid, self.before, self._given = check_grid(grid), before, nearest
         self.cells = checks.array(
             "cells", cells, (None, 2), "iuf", expected="points (x, y) in cells, one at least, of shape (n, 2)", finite=True

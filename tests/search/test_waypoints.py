@@ -145,7 +145,9 @@ def test_points_between_leave_the_line_and_its_corners():
         assert legs.max() <= spacing + 1e-9
         assert {tuple(cell) for cell in corners.cells.tolist()} <= {tuple(cell) for cell in made.cells.tolist()}
         # No more than are needed.
-        assert len(made) == 1 + sum(max(math.ceil(0.1 * math.dist(a, b) / spacing - 1e-9), 1) for a, b in pairwise(corners.cells))
+        assert len(made) == 1 + sum(
+            max(math.ceil(0.1 * math.dist(a, b) / spacing - 1e-9), 1) for a, b in pairwise(corners.cells)
+        )
     assert np.array_equal(corners.resampled(7.0).points, corners.points)
     for wrong in (0.0, -1.0, math.nan, math.inf, "0.2", 1e-9):
         with pytest.raises(GridPathError, match="spacing"):

@@ -68,6 +68,8 @@ def _source(spec: ProblemSpec, items: list[_Item]) -> str:
     words += [f"{key} {value}" for key, value in given.items() if value is not None]
     if spec.radius:
         words.append(f"obstacles grown by {spec.radius:g} m")
+    if spec.footprint:
+        words.append(f"obstacles grown by a footprint of {len(spec.footprint)} corners")
     return ", ".join(words)
 
 
@@ -85,14 +87,15 @@ def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyG
             yield _Item(str(seed), grid, None, (0, 0), goal)
         return
     grid, queries = _map_queries(study, k, spec, maps)
-    grown = refuse(study, (*place_of(k), "radius"), "", grid.inflate, spec.radius)
+    robot = (*place_of(k), "radius" if spec.footprint is None else "footprint")
+    grown = refuse(study, robot, "", grid.inflate, spec.radius, spec.footprint)
     content, cells = pack_grid(grown)
     for suffix, start, goal in queries:
         about = f"query {suffix}: " if spec.scen else ""
         where = (*place_of(k), "queries" if spec.scen else "start")
         refuse(study, where, about, grid.check_query, start, goal)
-        if spec.radius:
-            refuse(study, (*place_of(k), "radius"), about, check_grown, grown, spec.radius, start, goal)
+        if grown is not grid:
+            refuse(study, robot, about, check_grown, grown, start, goal)
         yield _Item(suffix, content, cells, start, goal)
 
 
