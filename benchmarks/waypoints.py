@@ -2,9 +2,9 @@
 
     python benchmarks/waypoints.py maps/depot.yaml maps/tb3_sandbox.yaml
 
-The queries stand in waypoints_queries.csv beside this script, by the names of the maps: cells, and the radius of the robot. Of each,
-the shortest path, the knee and the safest of some weighted sums are smoothed. Distances are checked by a search tree over the
-centres of all occupied cells, 16 points a cell, which shares nothing with the package. The maps are not shipped.
+The queries stand in waypoints_queries.csv beside this script, by the names of the maps: cells, and the radius of the robot.
+Of each, the shortest path, the knee and the safest of some weighted sums are smoothed. Distances are checked by a search tree
+over the centres of all occupied cells, 16 points a cell, which shares nothing with the package. The maps are not shipped.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet, load_map
+from pymoo_gridpath.algorithms import Waypoints
 from pymoo_gridpath.operators import ScalarizedSampling
 
 QUERIES = Path(__file__).with_name("waypoints_queries.csv")
@@ -49,19 +50,17 @@ def along(points: np.ndarray, shares: np.ndarray) -> np.ndarray:
     return np.stack([np.interp(shares * length[-1], length, points[:, axis]) for axis in (0, 1)], axis=1)
 
 
-def to_spare(record, obstacles: Obstacles, tolerance: float) -> tuple[float, float]:
-    """Return by how many cells the line is clearer than promised, at the least, and by how much less it may be between points."""
-    cells, corners = record.cells, record.waypoints().cells
+def to_spare(cells: np.ndarray, corners: np.ndarray, obstacles: Obstacles, tolerance: float) -> float:
+    """Return by how many cells the line is clearer than promised, at the least."""
     places = {tuple(cell): k for k, cell in enumerate(cells.tolist())}
-    least, between = np.inf, 0.0
+    least = np.inf
     for a, b in pairwise(corners.tolist()):
         stretch = cells[places[tuple(a)] : places[tuple(b)] + 1].astype(float)
         length = np.hypot(*np.diff(stretch, axis=0).T).sum()
         shares = np.linspace(0.0, 1.0, int(np.ceil(POINTS_A_CELL * length)) + 1)
         line = obstacles.distances(along(stretch[[0, -1]], shares))
         least = min(least, float((line - obstacles.distances(along(stretch, shares))).min()) + tolerance)
-        between = max(between, length / (len(shares) - 1))
-    return least, between
+    return least
 
 
 def queries() -> Iterator[dict[str, str]]:
@@ -106,9 +105,10 @@ def main(argv: list[str] | None = None) -> int:
             before = time.process_time()
             made = record.waypoints()
             seconds += time.process_time() - before
-            least, between = to_spare(record, trees[key[0]], 0.5)
-            worst, longer = min(worst, least), max(longer, made.length - made.before.length)
-            measures = [(one.length_m, one.turn, len(one), *one.clearance_m) for one in (made.before, made)]
+            worst = min(worst, to_spare(record.cells, made.cells, trees[key[0]], 0.5))
+            path = Waypoints(grid, record.cells)
+            longer = max(longer, made.length - path.length)
+            measures = [(one.length_m, one.turn, len(one), *one.clearance_m) for one in (path, made)]
             rows.append((key[0], name, *measures[0], *measures[1]))
     print(f"{n} queries, {len(rows)} paths, {1000 * seconds / len(rows):.1f} ms of processor time a path")
     print("map          path      length [m]     turn [deg]     points      least clearance [m]  mean clearance [m]")

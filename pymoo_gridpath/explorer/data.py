@@ -134,7 +134,7 @@ def unpacked_paths(data: dict) -> list[np.ndarray]:
 
 
 def packed_waypoints(trade_off) -> dict | None:
-    """Return which cells of the paths are their waypoints: how many each has, and the steps of the path up to each from the last.
+    """Return which cells of the paths are their waypoints: how many each has, and the steps up to each from the last.
 
     None of paths that are not legal, which nobody is to drive along.
     """

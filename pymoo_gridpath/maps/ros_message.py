@@ -21,6 +21,7 @@ from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
 # Of what stands beside the data.
 _MAX_BYTES = 64 * 1024
+_MOST_BYTES = 200_000_000
 
 _NUMBERS = b"0123456789- \t\n"
 _TO_BLANKS = bytes.maketrans(b"[],", b"   ")
@@ -37,9 +38,9 @@ def grid_of_message(
     Parameters
     ----------
     message : object
-        With ``info`` (``resolution``, ``width``, ``height``, ``origin``) and ``data`` as messages of rclpy, rospy and rosbags have
-        them: -1 where nothing is known, else 0 to 100 percent, row by row from the bottom. From 65 on a cell is occupied, up to
-        25 free, between them unknown; `OccupancyGrid.from_occupancy` takes other limits.
+        With ``info`` (``resolution``, ``width``, ``height``, ``origin``) and ``data`` as messages of rclpy, rospy and rosbags
+        have them: -1 where nothing is known, else 0 to 100 percent, row by row from the bottom. From 65 on a cell is occupied,
+        up to 25 free, between them unknown; `OccupancyGrid.from_occupancy` takes other limits.
     unknown : {"occupied", "free"}, default "occupied"
         What unknown cells are.
     corner_cutting : bool or "one side", default False
@@ -73,10 +74,8 @@ def grid_of_message(
     except AttributeError:
         expected = "a nav_msgs/OccupancyGrid with info and data"
         raise GridError(f"message is {checks.shown(message)}, expected {expected}") from None
-    width, height = (
-        checks.whole(f"info.{key}", value, 1, error=GridError)
-        for key, value in zip(("width", "height"), (width, height), strict=True)
-    )
+    width = checks.whole("info.width", width, 1, error=GridError)
+    height = checks.whole("info.height", height, 1, error=GridError)
     data = checks.array("data", data, (None,), "iu", expected="whole numbers from -1 to 100, one a cell", error=GridError)
     if len(data) != width * height:
         raise GridError(f"data has {len(data):,} values, expected {width} x {height} = {width * height:,}")
@@ -98,7 +97,7 @@ def _yaw_of(x: float, y: float, z: float, w: float) -> float:
 def read_ros_message(
     path: str | os.PathLike[str], unknown: str = "occupied", corner_cutting: CornerCutting = False
 ) -> OccupancyGrid:
-    """Read a message nav_msgs/OccupancyGrid from text, as ``ros2 topic echo --once --full-length /map`` or ``rostopic echo`` prints it.
+    """Read a message nav_msgs/OccupancyGrid from text, as ``ros2 topic echo`` or ``rostopic echo`` prints it.
 
     Parameters
     ----------
@@ -115,10 +114,10 @@ def read_ros_message(
     ------
     MapError
         If the file cannot be read, is no such message, or its data were cut short, as ``ros2 topic echo`` does unless told
-        ``--full-length``.
+        ``--full-length``: ``ros2 topic echo --once --full-length /map > map.yaml``.
     """
     check_unknown(path, unknown)
-    text = read_text_bytes(path)
+    text = read_text_bytes(path, _MOST_BYTES)
     begin = re.search(rb"^data:", text, re.MULTILINE)
     if begin is None:
         raise MapError(path, "the key 'data' is missing, expected a message nav_msgs/OccupancyGrid")

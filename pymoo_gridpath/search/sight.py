@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
-from pymoo_gridpath.search.nearest import Nearest, distance
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.nearest import Nearest, distance
 from pymoo_gridpath.search.sequences import cut_loops
 
 # A gain below this, in cells, is rounding of numbers.
@@ -33,8 +33,8 @@ _LEAST_SPARE = 1.0 / 256.0
 class Promise(NamedTuple):
     """How clear of obstacles a line must be that replaces a stretch of a path.
 
-    Each point of the line, at some share of its length, shall be at most ``tolerance`` nearer to an obstacle than the path is at
-    the same share of the stretch. A stretch that is straight already is kept as it is.
+    Each point of the line, at some share of its length, shall be at most ``tolerance`` nearer to an obstacle than the path is
+    at the same share of the stretch. A stretch that is straight already is kept as it is.
 
     Attributes
     ----------
@@ -64,7 +64,8 @@ class Promise(NamedTuple):
 
 
 # Planners ask of a line no more than that it is one of sight.
-_NO_PROMISE = Promise(*[np.empty((0, 0), dtype=np.int32)] * 2, *[np.empty(0)] * 3, np.inf)
+_NO_CELLS, _NO_ROWS = np.empty(0), np.empty((0, 0), dtype=np.int32)
+_NO_PROMISE = Promise(_NO_ROWS, _NO_ROWS, _NO_CELLS, _NO_CELLS, _NO_CELLS, np.inf)
 
 
 def path_length(moves: Moves, path: np.ndarray) -> float:
@@ -258,7 +259,7 @@ def append_line(width, cell, other, path, n):
 
 @kernel
 def _farthest(legal, offsets, width, path, backward, promise):
-    """Return the places of what `farthest_seen` returns; what a cell sees comes and goes, so that the search is from the end."""
+    """Return the places of `farthest_seen`. What a cell sees comes and goes, so that the search is from the end."""
     kept = np.zeros(len(path), dtype=np.int64)
     n, i = 1, 0
     while i < len(path) - 1:

@@ -10,10 +10,10 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import Cell, OccupancyGrid
-from pymoo_gridpath.search.nearest import Nearest
-from pymoo_gridpath.search.waypoints import Waypoints, metres_of
 from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.nearest import Nearest
 from pymoo_gridpath.search.sight import Promise, places_of_farthest
+from pymoo_gridpath.search.waypoints import Waypoints, metres_of
 
 # In cells: centres of cells stand for points half a cell around.
 DEFAULT_TOLERANCE = 0.5
@@ -39,8 +39,8 @@ class Smoother:
 
     @functools.cached_property
     def _nearest(self) -> Nearest:
-        # In the part that can be reached are the nearest grown obstacles, and no further away than the radius the original ones.
-        further = math.ceil(self.grid.robot_radius / metres_of(self.grid)) + 2
+        # The nearest grown obstacles are in the part that can be reached; what they grew from is within the radius of that.
+        further = math.ceil(self.grid.radius_in_cells(self.grid.robot_radius)) + 2
         box = self._moves.box.grown(further, self.grid.shape)
         return Nearest(self.grid.original.occupied[box.slices], (box.x0, box.y0))
 

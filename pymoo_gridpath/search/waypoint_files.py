@@ -47,7 +47,7 @@ def f1tenth_text(points: np.ndarray, yaw: np.ndarray, speed: float) -> str:
 
 
 def signed_curvature(points: np.ndarray) -> np.ndarray:
-    """Return Menger's curvature at all points but the ends: that of the circle through three, positive to the left, (n - 2,)."""
+    """Return Menger's curvature, that of the circle through three points, at all but the ends, positive to the left."""
     if len(points) < 3:
         return np.zeros(0)
     before, after, both = points[1:-1] - points[:-2], points[2:] - points[1:-1], points[2:] - points[:-2]

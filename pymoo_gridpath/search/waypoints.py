@@ -15,8 +15,8 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
-from pymoo_gridpath.search.nearest import Nearest
 from pymoo_gridpath.search import waypoint_files
+from pymoo_gridpath.search.nearest import Nearest
 
 # More points than this are a slip of the spacing.
 _MOST_POINTS = 1_000_000
@@ -32,8 +32,8 @@ class Clearance(NamedTuple):
 class Waypoints:
     """Points of a line from a start to a goal, straight from each to the next.
 
-    Those of planners, and what `PathRecord.waypoints` makes of a path, are the corners of a line every piece of which is a line of
-    sight: it crosses no occupied cell, and the cells that stand for it on the grid are a chain of legal steps.
+    Those of planners, and what `PathRecord.waypoints` makes of a path, are the corners of a line every piece of which is a line
+    of sight: it crosses no occupied cell, and the cells that stand for it on the grid are a chain of legal steps.
 
     Parameters
     ----------
@@ -242,8 +242,8 @@ class Waypoints:
         Notes
         -----
         Headings are from the x axis and from 0 to 2 pi, as in the tracks of F1TENTH; the optimiser that these come from is
-        documented to count from the y axis. Curvature is that of the circle through a point and those before and after, positive
-        to the left, and 0 at both ends: take a spacing. These files hold laps in general; a path has an end.
+        documented to count from the y axis. Curvature is that of the circle through a point and those before and after,
+        positive to the left, and 0 at both ends: take a spacing. These files hold laps in general; a path has an end.
         """
         self._check_metres("a racing line")
         speed = checks.number("speed", speed, 0.0, expected="metres per second, zero or more")

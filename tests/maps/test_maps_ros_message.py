@@ -115,7 +115,7 @@ def test_texts_that_are_none(tmp_path, change, message):
     file = tmp_path / "hall.yaml"
     text = text_of(message_of())
     assert change[0] in text
-    before, found, after = text.rpartition(change[0])
+    before, _, after = text.rpartition(change[0])
     file.write_text(before + change[1] + after)
     with pytest.raises(MapError, match=message) as caught:
         read_ros_message(file)
