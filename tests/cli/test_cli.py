@@ -55,7 +55,17 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
     assert done.returncode == 0, done.stderr
     assert without_compiling(done.stderr) == "", "progress must be silent in a pipe"
     assert "shortest" in done.stdout and "vulnerability" in done.stdout
-    names = {"paths.csv", "paths.json", "map.png", "map.pdf", "front.png", "front.pdf", "convergence.png", "convergence.pdf"}
+    names = {
+        "paths.csv",
+        "paths.json",
+        "population.npz",
+        "map.png",
+        "map.pdf",
+        "front.png",
+        "front.pdf",
+        "convergence.png",
+        "convergence.pdf",
+    }
     assert {file.name for file in out.iterdir()} == names
     document = json.loads((out / "paths.json").read_text())
     with open(out / "paths.csv", newline="") as file:
