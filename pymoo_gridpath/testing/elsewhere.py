@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import functools
 import os
 import pickle
@@ -62,4 +63,9 @@ def _process(path: tuple[str, ...]) -> subprocess.Popen:
     """Return the process; another one once modules are looked for in other places."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path), "PYTHONHASHSEED": "77"}
     command = [sys.executable, "-c", _SERVE]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment)
+    process = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment
+    )
+    # It ends once its input does.
+    atexit.register(process.communicate)
+    return process
