@@ -59,6 +59,7 @@ def _grids(w: World) -> dict[str, Call]:
         ),
         "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
         "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
+        "OccupancyGrid.check_resolution": (grid.check_resolution, {"need": "a radius in metres"}),
         "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
         "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),
         "OccupancyGrid.move_graph": (grid.move_graph, {}),

@@ -48,10 +48,12 @@ class PathRecord:
         Which of `NAMES` it goes by, or "earliest".
     cells : numpy.ndarray of int, shape (n_cells, 2)
         Visited cells (x, y), start and goal included; of a path in time its cell at each tick.
-    points : numpy.ndarray of float, shape (n_cells, 2)
-        Their centres in metres in the map's frame.
-    length, length_m : float
-        Length in cells and in metres.
+    points : numpy.ndarray of float, shape (n_cells, 2), or None
+        Their centres in metres in the map's frame; None on a map in cells.
+    length : float
+        Length in cells.
+    length_m : float or None
+        Length in metres; None on a map in cells.
     vulnerability : float
         Sum of the obstacles' potential over the visited cells.
     turn : float
@@ -72,9 +74,9 @@ class PathRecord:
     index: int
     names: tuple[str, ...]
     cells: np.ndarray = field(repr=False)
-    points: np.ndarray = field(repr=False)
+    points: np.ndarray | None = field(repr=False)
     length: float
-    length_m: float
+    length_m: float | None
     vulnerability: float
     turn: float
     interfering_cells: int
@@ -111,8 +113,8 @@ class TradeOffSet:
     paths : ColumnPaths or CellPaths
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
-        ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
-        [cells] and every other objective of the problem by its name.
+        ``length`` [cells], ``length_m`` (but for maps in cells), ``vulnerability``, ``turn`` [degrees],
+        ``interfering_cells``, ``clearance`` [cells] and every other objective of the problem by its name.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -227,7 +229,7 @@ class TradeOffSet:
         length = np.asarray(self.paths.length, dtype=float)
         found = {
             "length": length,
-            "length_m": length * grid.resolution,
+            **({} if grid.resolution is None else {"length_m": length * grid.resolution}),
             "vulnerability": measures.vulnerability(self.paths),
             "turn": np.asarray(self.paths.turn),
             "interfering_cells": np.asarray(self.paths.interfering_cells),
@@ -305,21 +307,21 @@ class TradeOffSet:
         """Return the path at an index or of a name."""
         k = self.index(key) if isinstance(key, str) else range(len(self))[key]
         value = {name: values[k].item() for name, values in self.measures.items()}
-        cells = self._cells[k]
+        cells, grid = self._cells[k], self.problem.grid
         return PathRecord(
             index=k,
             names=self.names(k),
             cells=cells,
-            points=self.problem.grid.to_metres(cells),
+            points=None if grid.resolution is None else grid.to_metres(cells),
             length=value["length"],
-            length_m=value["length_m"],
+            length_m=value.get("length_m"),
             vulnerability=value["vulnerability"],
             turn=value["turn"],
             interfering_cells=value["interfering_cells"],
             clearance=value["clearance"],
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
-            grid=self.problem.grid,
+            grid=grid,
         )
 
     # -- words and files ----------------------------------------------------------------------------------------------

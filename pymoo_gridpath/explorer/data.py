@@ -43,7 +43,7 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     problem = trade_off.problem
     box = drawn_box(trade_off)
     grid = problem.grid.crop(box)
-    resolution = resolution_of(problem.grid)
+    resolution = problem.grid.resolution
     corner = np.array([box.x0, box.y0])
     cells = [np.asarray(record.cells) - corner for record in trade_off]
     field = _levels(drawn_field(trade_off, box), grid)
@@ -68,11 +68,6 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "field": None if field is None else packed(field),
         **packed_paths(cells),
     }
-
-
-def resolution_of(grid: OccupancyGrid) -> float | None:
-    """Return the metres a cell of a map that has them; cells of 1 are those of a map that says nothing."""
-    return None if grid.resolution in (None, 1.0) else grid.resolution
 
 
 def packed(array: np.ndarray) -> dict:
