@@ -63,6 +63,7 @@ def _grids(w: World) -> dict[str, Call]:
             {"original": grid, "robot_radius": 0.5, "footprint": [(0.5, 0.0), (0.0, 0.2), (-0.1, -0.2)]},
         ),
         "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
+        "OccupancyGrid.check_resolution": (grid.check_resolution, {"need": "a radius in metres"}),
         "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
         "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),
         "OccupancyGrid.move_graph": (grid.move_graph, {}),

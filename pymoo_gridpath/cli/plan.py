@@ -112,6 +112,9 @@ def _plan(arguments) -> int:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
     map_name = arguments.map or DEFAULT_MAP
     grid = load(map_name, arguments)
+    if arguments.units == "m":
+        # Now, and not once the search has ended.
+        grid.check_resolution("--units m")
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
     grid = grown(grid, arguments)

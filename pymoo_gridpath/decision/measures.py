@@ -58,7 +58,7 @@ class PathMeasures:
         return are_legal(paths.interfering_cells, over)
 
     def clearance_m(self, cells: Sequence[np.ndarray]) -> np.ndarray:
-        """Return the room between a robot on its way and the obstacles of the map as they were before they grew.
+        """Return the room between a robot on its way and the obstacles of a map in metres, as they were before they grew.
 
         Parameters
         ----------
@@ -74,4 +74,5 @@ class PathMeasures:
         # What keeps the robot from a cell is no further away than it is wide.
         reach = math.ceil(grid.radius_in_cells(grid.robot_radius)) + 2
         away = least_distances(grid.original.occupied, cells, box.grown(reach, grid.shape))
-        return np.round(away * grid.resolution - grid.robot_radius, _DECIMALS) + 0.0
+        metres = away * grid.check_resolution("a clearance in metres")
+        return np.round(metres - grid.robot_radius, _DECIMALS) + 0.0

@@ -48,10 +48,12 @@ class PathRecord:
         Which of `NAMES` it goes by, or "earliest".
     cells : numpy.ndarray of int, shape (n_cells, 2)
         Visited cells (x, y), start and goal included; of a path in time its cell at each tick.
-    points : numpy.ndarray of float, shape (n_cells, 2)
-        Their centres in metres in the map's frame.
-    length, length_m : float
-        Length in cells and in metres.
+    points : numpy.ndarray of float, shape (n_cells, 2), or None
+        Their centres in metres in the map's frame; None on a map in cells.
+    length : float
+        Length in cells.
+    length_m : float or None
+        Length in metres; None on a map in cells.
     vulnerability : float
         Sum of the obstacles' potential over the visited cells.
     turn : float
@@ -61,11 +63,11 @@ class PathRecord:
     clearance : float
         Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid. Of a path in time
         also from those of obstacles that move, at the same tick.
-    clearance_m : float
+    clearance_m : float or None
         Least distance in metres between the robot on its way and the map's own obstacles, those of `OccupancyGrid.original`: of
         the straight lines through the centres of the cells from the nearest edge of an occupied cell, less the `robot_radius`.
         It is ``inf`` on an empty map, and never below 0 of a legal path on a grid that was inflated once, unless corners may be
-        cut. Obstacles that move of paths in time are not among them.
+        cut. Obstacles that move of paths in time are not among them. None on a map in cells.
     objectives : dict of str to float
         The plain objectives of the problem.
     genes : numpy.ndarray, shape (n_var,)
@@ -77,14 +79,14 @@ class PathRecord:
     index: int
     names: tuple[str, ...]
     cells: np.ndarray = field(repr=False)
-    points: np.ndarray = field(repr=False)
+    points: np.ndarray | None = field(repr=False)
     length: float
-    length_m: float
+    length_m: float | None
     vulnerability: float
     turn: float
     interfering_cells: int
     clearance: float
-    clearance_m: float
+    clearance_m: float | None
     objectives: dict[str, float]
     genes: np.ndarray = field(repr=False)
     grid: OccupancyGrid | None = field(default=None, repr=False)
@@ -118,7 +120,8 @@ class TradeOffSet:
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
         ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
-        [cells], ``clearance_m`` and every other objective of the problem by its name; see `PathRecord`.
+        [cells], ``clearance_m`` and every other objective of the problem by its name; see `PathRecord`. Maps in cells have none
+        in metres.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -233,14 +236,15 @@ class TradeOffSet:
         length = np.asarray(self.paths.length, dtype=float)
         found = {
             "length": length,
-            "length_m": length * grid.resolution,
+            **({} if grid.resolution is None else {"length_m": length * grid.resolution}),
             "vulnerability": measures.vulnerability(self.paths),
             "turn": np.asarray(self.paths.turn),
             "interfering_cells": np.asarray(self.paths.interfering_cells),
             "clearance": np.array([field.take(cells @ (1, grid.width)).min() for cells in self._cells]),
         }
         found["clearance"] = np.minimum(found["clearance"], self.paths.mover_distance)
-        found["clearance_m"] = measures.clearance_m(self._cells)
+        if grid.resolution is not None:
+            found["clearance_m"] = measures.clearance_m(self._cells)
         for name, values in zip(self.objective_names, self.F.T, strict=True):
             found.setdefault(name, values)
         return found
@@ -312,22 +316,22 @@ class TradeOffSet:
         """Return the path at an index or of a name."""
         k = self.index(key) if isinstance(key, str) else range(len(self))[key]
         value = {name: values[k].item() for name, values in self.measures.items()}
-        cells = self._cells[k]
+        cells, grid = self._cells[k], self.problem.grid
         return PathRecord(
             index=k,
             names=self.names(k),
             cells=cells,
-            points=self.problem.grid.to_metres(cells),
+            points=None if grid.resolution is None else grid.to_metres(cells),
             length=value["length"],
-            length_m=value["length_m"],
+            length_m=value.get("length_m"),
             vulnerability=value["vulnerability"],
             turn=value["turn"],
             interfering_cells=value["interfering_cells"],
             clearance=value["clearance"],
-            clearance_m=value["clearance_m"],
+            clearance_m=value.get("clearance_m"),
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
-            grid=self.problem.grid,
+            grid=grid,
         )
 
     # -- words and files ----------------------------------------------------------------------------------------------

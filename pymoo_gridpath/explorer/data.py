@@ -44,7 +44,7 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     problem = trade_off.problem
     box = drawn_box(trade_off)
     grid = problem.grid.crop(box)
-    resolution = resolution_of(problem.grid)
+    resolution = problem.grid.resolution
     corner = np.array([box.x0, box.y0])
     cells = [np.asarray(record.cells) - corner for record in trade_off]
     field = _levels(drawn_field(trade_off, box), grid)
@@ -75,12 +75,8 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
 
 def _grown_label(grid: OccupancyGrid) -> str:
     """Return what the cells are called in which a robot would touch an obstacle."""
-    return f"Too near for {'its radius' if grid.footprint is None else 'its footprint'} of {grid.robot_radius:.3g} m"
-
-
-def resolution_of(grid: OccupancyGrid) -> float | None:
-    """Return the metres a cell of a map that has them; cells of 1 are those of a map that says nothing."""
-    return None if grid.resolution in (None, 1.0) else grid.resolution
+    unit = "cells" if grid.resolution is None else "m"
+    return f"Too near for {'a radius' if grid.footprint is None else 'a footprint'} of {grid.robot_radius:.3g} {unit}"
 
 
 def packed(array: np.ndarray) -> dict:

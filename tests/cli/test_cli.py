@@ -97,11 +97,11 @@ def test_plan_takes_the_query_of_a_text_map(tmp_path):
 
 def test_files_say_which_map_was_read_and_which_was_planned_on(tmp_path, free_map):
     query = ["--start", "0,0", "--goal", "5,3"]
-    assert run("plan", free_map, *query, "--radius", "0.6", *FAST, "-o", tmp_path / "out").returncode == 0
+    assert run("plan", free_map, *query, "--resolution", "1", "--radius", "0.6", *FAST, "-o", tmp_path / "out").returncode == 0
     document = json.loads((tmp_path / "out" / "paths.json").read_text())
     assert document["settings"]["robot_radius"] == 0.6
     assert document["settings"]["source_map"]["occupied_cells"] == 2
-    assert document["map"]["occupied_cells"] == load_map(free_map).inflate(0.6).n_occupied > 2
+    assert document["map"]["occupied_cells"] == load_map(free_map).grow(0.6).n_occupied > 2
 
 
 def test_figures_of_an_earlier_set_do_not_stay(tmp_path, free_map):
@@ -234,7 +234,9 @@ def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "there is no representation 'real'"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "cells", "--axis", "y"], "advance along none"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--objectives", "lenght"], "did you mean 'length'"),
-        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "robot's radius of 5 m"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--resolution", "1", "--radius", "5"], "robot's radius of 5 m"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "is in cells, and a radius in metres needs"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--units", "m"], "is in cells, and --units m needs their size"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "-1"], "robot radius is -1"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "0"], "'0' is not a whole number, one or more"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "ten"], "'ten' is not a whole number"),
@@ -368,6 +370,9 @@ def test_info_describes_a_file(free_map, capsys):
     assert main(["info", str(free_map), "--resolution", "0.5"]) == 0
     out = capsys.readouterr().out
     assert "6 x 4 cells, 3 x 2 m" in out and "2 cells, 8.3%" in out and "0.5 m a cell" in out
+    assert main(["info", str(free_map)]) == 0
+    out = capsys.readouterr().out
+    assert "6 x 4 cells\n" in out and "not stated: a map in cells; --resolution M" in out and "origin" not in out
     assert main(["info", "office"]) == 0
     assert "query" in capsys.readouterr().out
 

@@ -49,7 +49,7 @@ def test_the_list():
 
 @pytest.mark.parametrize(
     ("name", "width", "height", "resolution", "corner_cutting"),
-    [("warehouse", 60, 40, 0.5, False), ("office", 60, 40, 0.25, False), ("paper16", 16, 16, 1.0, True)],
+    [("warehouse", 60, 40, 0.5, False), ("office", 60, 40, 0.25, False), ("paper16", 16, 16, None, True)],
 )
 def test_what_they_are(name, width, height, resolution, corner_cutting):
     grid = load_shipped(name)
