@@ -17,7 +17,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.known import find_algorithm
 from pymoo_gridpath.decision import drawn, export, provenance
 from pymoo_gridpath.decision.knee import knee_point
-from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.decision.measures import PathMeasures, risk_of
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
@@ -130,9 +130,10 @@ class TradeOffSet:
     Notes
     -----
     ``trade_off["knee"]`` or ``trade_off.knee`` is a `PathRecord`; so is ``trade_off[0]``. `shortest`, `safest` and `smoothest`
-    have the least length, vulnerability and turn *of the set*, whatever its objectives; ties go to the path that is better
-    in the first objective that differs. `knee` is defined in `knee_point`, on the objectives of the problem. Of paths in time,
-    those of a `TimedPathProblem`, `earliest` is the one that arrives first.
+    have the least length, vulnerability and turn *of the set*, whatever its objectives; of a problem with another `Risk`, the
+    safest path is that of which this is least. Ties go to the path that is better in the first objective that differs. `knee`
+    is defined in `knee_point`, on the objectives of the problem. Of paths in time, those of a `TimedPathProblem`, `earliest` is
+    the one that arrives first.
 
     References
     ----------
@@ -260,9 +261,16 @@ class TradeOffSet:
     def named(self) -> dict[str, int]:
         """Index of the path that goes by each of `NAMES`, and of paths in time that of the "earliest"."""
         # Paths stand in the order of their objectives, so the first of equal ones is the better.
-        least = {name: int(np.argmin(self.measures[of])) for name, of in _LEAST.items() if of in self.measures}
+        least_of = {**_LEAST, "safest": self._safety}
+        least = {name: int(np.argmin(self.measures[of])) for name, of in least_of.items() if of in self.measures}
         found = {**least, "knee": knee_point(self.F)}
         return {name: found[name] for name in names_for(self.objective_names)}
+
+    @property
+    def _safety(self) -> str:
+        """The measure of which the safest path has the least."""
+        risk = risk_of(self.problem)
+        return _LEAST["safest"] if risk is None else risk.name
 
     def index(self, name: str) -> int:
         """Return the index of the path that goes by a name.
@@ -293,7 +301,7 @@ class TradeOffSet:
 
     @property
     def safest(self) -> PathRecord:
-        """The path of least vulnerability."""
+        """The path of least risk: by default of least vulnerability."""
         return self["safest"]
 
     @property
@@ -358,13 +366,28 @@ class TradeOffSet:
 
     @property
     def advice(self) -> str:
-        """What to try where the shortest path found is over 5 % longer than the shortest of all; empty where it is not.
+        """What to try where there is nothing to choose from, or where the paths are long; empty where all is well.
 
-        It is empty, too, if length is no objective, if the paths are not legal, and where the shortest of all may not be one of
-        them: under a potential limit, and among obstacles that move.
+        The front is one point if a single path is the best by all of several objectives. The shortest path found is long if it
+        is over 5 % longer than the shortest of all. Of that nothing is said if length is no objective, if the paths are not
+        legal, and where the shortest of all may not be one of them: under a potential limit, and among obstacles that move.
         """
+        if self.problem.start == self.problem.goal:
+            return ""
+        return "; ".join(filter(None, (self._of_one_point, self._of_long_paths)))
+
+    @property
+    def _of_one_point(self) -> str:
+        if len(self) > 1 or not self.feasible or len(self.objective_names) == 1:
+            return ""
+        risk = risk_of(self.problem)
+        ways = [*filter(None, [risk and risk.wider]), "a further objective, such as turn,"]
+        return f"the front found is one point, a path that is best by every objective; {' or '.join(ways)} may give a choice"
+
+    @property
+    def _of_long_paths(self) -> str:
         others = self.problem.potential_limit is not None or self.problem.representation.timed
-        if not self.least_length or not self.feasible or others:
+        if self.least_length is None or not self.feasible or others:
             return ""
         excess = float(self.measures["length"].min()) / self.least_length - 1.0
         if excess <= _MUCH_LONGER:
@@ -388,7 +411,7 @@ class TradeOffSet:
         return f"{', '.join(others)} or {last}" if others else last
 
     def table(self, max_rows: int | None = None) -> str:
-        """Return a plain text table, one line a path, with the names of those that have one.
+        """Return a plain text table, one line a path, with the names of those that have one, in metres where the map has them.
 
         Where length is an objective a line says how long the shortest of all paths is, and another, if those found are much
         longer, what to try: `least_length` and `advice`.

@@ -20,7 +20,7 @@ from pymoo_gridpath.grid import Box, OccupancyGrid
 # Measures are for people to compare: so many digits tell apart all that figures could.
 _DIGITS = 7
 
-# Measures in cells that are metres on a map which has them, and what a page calls them.
+# Measures in cells, of which there are others in metres on a map which has them, and what a page calls them.
 _LENGTHS = {"length": "Length", "clearance": "Least clearance"}
 _LABELS = {
     "turn": ("Total turn", "\u00b0"),
@@ -60,7 +60,7 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "start": (np.asarray(problem.start) - corner).tolist(),
         "goal": (np.asarray(problem.goal) - corner).tolist(),
         "summary": _summary(trade_off, box, resolution),
-        "caution": "" if trade_off.feasible else f"Not feasible: {trade_off.infeasibility}.",
+        "caution": _caution(trade_off),
         "file_name": re.sub(r"[^A-Za-z0-9._-]+", "-", title).strip("-.")[:60] or "map",
         "field_label": "Potential",
         "columns": _columns(trade_off, resolution),
@@ -135,6 +135,13 @@ def _levels(field: np.ndarray, grid: OccupancyGrid) -> np.ndarray | None:
     return np.rint(free / top * 255.0).astype(np.uint8) if 0.0 < top < np.inf else None
 
 
+def _caution(trade_off) -> str:
+    if not trade_off.feasible:
+        return f"Not feasible: {trade_off.infeasibility}."
+    advice = trade_off.advice
+    return f"{advice[0].upper()}{advice[1:]}." if advice else ""
+
+
 def _summary(trade_off, box: Box, resolution: float | None) -> str:
     problem = trade_off.problem
     whole = problem.grid
@@ -150,7 +157,8 @@ def _summary(trade_off, box: Box, resolution: float | None) -> str:
 def _columns(trade_off, resolution: float | None) -> list[dict]:
     """Return the objectives of a set, and after them its other measures."""
     names = trade_off.objective_names
-    others = [name for name in trade_off.measures if name not in names and name != "length_m"]
+    in_metres = [f"{name}_m" for name in _LENGTHS]
+    others = [name for name in trade_off.measures if name not in names and name not in in_metres]
     if trade_off.feasible:
         others.remove("interfering_cells")  # they cross none
     labels = {objective.name: objective.label for objective in trade_off.problem.objectives}
@@ -159,7 +167,7 @@ def _columns(trade_off, resolution: float | None) -> list[dict]:
         values = np.asarray(trade_off.measures[name])
         if name in _LENGTHS:
             label, unit = _LENGTHS[name], "cells" if resolution is None else "m"
-            values = values * (1.0 if resolution is None else resolution)
+            values = values if resolution is None else np.asarray(trade_off.measures[f"{name}_m"])
         elif name in _LABELS:
             label, unit = _LABELS[name]
         else:

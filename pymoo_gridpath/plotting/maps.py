@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +19,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import check_field, obstacle_potential
 from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 from pymoo_gridpath.plotting import style
-
-Units = Literal["cells", "m"]
+from pymoo_gridpath.plotting.style import Units
 
 #: Larger maps are drawn without lines between cells.
 MAX_RULED = 32
@@ -34,7 +33,7 @@ def plot_map(
     potential: bool | np.ndarray = True,
     start: Sequence[int] | None = None,
     goal: Sequence[int] | None = None,
-    units: Units = "cells",
+    units: Units | None = None,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
@@ -49,8 +48,8 @@ def plot_map(
         The field under the cells; True computes `obstacle_potential`, False draws none.
     start, goal : (int, int), optional
         Cells (x, y), marked by a circle and a star.
-    units : {"cells", "m"}, default "cells"
-        What the axes measure. Metres are those of the map's frame, with its origin and yaw: a turned map is drawn turned.
+    units : {"cells", "m"}, optional
+        What the axes measure, by default metres where the map has them. Metres are those of the map's frame, with its origin and yaw: a turned map is drawn turned.
     legend : bool, default True
         Whether to name the marks in a legend beside the map.
     ax : matplotlib.axes.Axes, optional
@@ -67,7 +66,7 @@ def plot_map(
         off the grid.
     """
     check_grid(grid)
-    style.check_units(units, grid)
+    units = style.check_units(units, grid)
     style.check_axes(ax)
     legend = checks.flag("legend", legend)
     field = _field(grid, potential)
@@ -92,7 +91,7 @@ def plot_paths(
     which: Sequence[str] | None = None,
     all_paths: bool = True,
     potential: bool | np.ndarray = True,
-    units: Units = "cells",
+    units: Units | None = None,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
@@ -130,7 +129,7 @@ def plot_paths(
     Ahmed and Deb (2013), figures 5 to 7.
     """
     groups = style.by_path(check_set(trade_off), which)
-    style.check_units(units, trade_off.problem.grid)
+    units = style.check_units(units, trade_off.problem.grid)
     style.check_axes(ax)
     all_paths, legend = checks.flag("all_paths", all_paths), checks.flag("legend", legend)
     problem = trade_off.problem

@@ -150,6 +150,43 @@ def test_steps_are_an_option_of_maps(tmp_path, free_map, capsys, options, steps,
     assert words in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("options", "stated"),
+    [
+        ([], {"name": "vulnerability", "variance": 0.5, "nearest": False, "cutoff": 0.0}),
+        (["--resolution", "0.05"], {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 0.001}),
+        (
+            ["--resolution", "0.05", "--risk", "robot"],
+            {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 0.001},
+        ),
+        (
+            ["--resolution", "0.05", "--sigma-m", "2"],
+            {"name": "vulnerability", "sigma_m": 2.0, "nearest": True, "cutoff": 0.001},
+        ),
+        (
+            ["--resolution", "0.05", "--risk", "paper"],
+            {"name": "vulnerability", "variance": 0.5, "nearest": False, "cutoff": 0.0},
+        ),
+        (
+            ["--resolution", "0.05", "--risk", "inflation"],
+            {"name": "inflation", "cost_scaling_factor": 10.0, "inflation_radius": 0.55},
+        ),
+    ],
+)
+def test_plan_takes_a_risk_and_files_say_which(tmp_path, free_map, options, stated):
+    done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", "--algorithm", "exact", "-o", tmp_path / "out", *options)
+    assert done.returncode == 0, done.stderr
+    document = json.loads((tmp_path / "out" / "paths.json").read_text())
+    assert document["settings"]["objectives"] == [{"name": "length"}, stated]
+
+
+def test_plan_says_that_a_front_is_one_point(tmp_path, free_map):
+    query = ("plan", free_map, "--start", "0,0", "--goal", "5,0", "--algorithm", "exact", "-o", tmp_path / "out")
+    done = run(*query, "--resolution", "0.05", "--risk", "paper")
+    said = "the front found is one point, a path that is best by every objective; a wider risk, such as variance=2 or"
+    assert done.stderr.count(said) == 1 and f"NOTE: {said}" in done.stdout
+
+
 @pytest.mark.parametrize("algorithm", ["spea2", "moea/d", "NSGA-III"])
 def test_plan_takes_other_algorithms_and_settings(tmp_path, free_map, algorithm):
     done = run(
@@ -236,6 +273,11 @@ def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--objectives", "lenght"], "did you mean 'length'"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--resolution", "1", "--radius", "5"], "robot's radius of 5 m"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "is in cells, and a radius in metres needs"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--risk", "robot"], "in cells, and --risk robot needs their size"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--sigma-m", "1"], "in cells, and --sigma-m 1 needs their size"),
+        (["plan", "office", "--sigma-m", "0"], "sigma_m of the potential is 0.0, expected a positive number of metres"),
+        (["plan", "office", "--sigma-m", "1", "--risk", "paper"], "--sigma-m is for the robot's risk, not for --risk paper"),
+        (["plan", "office", "--objectives", "length,turn", "--risk", "paper"], "--risk is for the objective vulnerability"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--units", "m"], "is in cells, and --units m needs their size"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "-1"], "robot radius is -1"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "0"], "'0' is not a whole number, one or more"),
