@@ -49,7 +49,8 @@ def plot_map(
     start, goal : (int, int), optional
         Cells (x, y), marked by a circle and a star.
     units : {"cells", "m"}, optional
-        What the axes measure, by default metres where the map has them. Metres are those of the map's frame, with its origin and yaw: a turned map is drawn turned.
+        What the axes measure, by default metres where the map has them. Metres are those of the map's frame, with its origin
+        and yaw: a turned map is drawn turned.
     legend : bool, default True
         Whether to name the marks in a legend beside the map.
     ax : matplotlib.axes.Axes, optional

@@ -22,7 +22,6 @@ from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
 from pymoo_gridpath.pictures import OTHERS as OTHERS
 from pymoo_gridpath.pictures import PALETTE
 
-
 Units = Literal["cells", "m"]
 
 
