@@ -102,6 +102,12 @@ def _maps(w: World) -> dict[str, Call]:
         "read_movingai": (maps.read_movingai, {"path": w.movingai_map, "corner_cutting": True, **pose}),
         "read_npy": (maps.read_npy, {"path": w.npy_map, "corner_cutting": True, **pose}),
         "read_ros": (maps.read_ros, {"path": w.ros_map, "unknown": "occupied", "corner_cutting": True}),
+        "read_ros_message": (maps.read_ros_message, {"path": w.ros_message, "unknown": "free", "corner_cutting": True}),
+        "read_rosbag": (maps.read_rosbag, {"path": w.bag, "topic": "/map", "unknown": "free", "corner_cutting": True}),
+        "grid_of_message": (
+            maps.grid_of_message,
+            {"message": w.message, "unknown": "free", "corner_cutting": True, "name": "hall"},
+        ),
         "read_scen": (maps.read_scen, {"path": w.scen, "grid": maps.read_movingai(w.movingai_map)}),
         "read_text": (maps.read_text, {"path": w.text_map, "corner_cutting": True, **pose}),
         "read_text_header": (maps.read_text_header, {"path": w.text_map}),

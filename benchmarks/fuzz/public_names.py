@@ -33,7 +33,6 @@ BUILDING_BLOCKS = (
     "Sequences",
     "SightPaths",
     "TimedFront",
-    "Waypoints",
     "check_box",
     "check_grid",
     "check_paths",

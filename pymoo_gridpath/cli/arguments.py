@@ -51,6 +51,17 @@ def natural(text: str) -> int:
     return int(text)
 
 
+def above_zero(text: str) -> float:
+    """Return the number above 0 that a text says."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0.0 < number < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0")
+    return number
+
+
 def share(text: str) -> float:
     """Return the number above 0, at most 1, that a text says."""
     try:

@@ -20,6 +20,7 @@ from pymoo_gridpath.cli.arguments import (
 )
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
 from pymoo_gridpath.cli.query import add_query, ends, grown
+from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
 
@@ -102,6 +103,7 @@ def add_plan_command(commands) -> None:
         metavar="DIR",
         help="where files go (default: gridpath-out)",
     )
+    add_waypoint_options(plan)
     plan.add_argument("--html", type=html_file, metavar="FILE", help="write a page to choose a path from")
     plan.add_argument("--show", action="store_true", help="draw the map with the paths on a terminal that can")
     plan.add_argument("--units", choices=("cells", "m"), help="axes of the map figure (default: metres if the map has them)")
@@ -129,6 +131,7 @@ def _plan(arguments) -> int:
     if arguments.units == "m":
         # Now, and not once the search has ended.
         grid.check_resolution("--units m")
+    check_waypoint_options(arguments, grid)
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
     grid = grown(grid, arguments)
@@ -181,6 +184,7 @@ def _plan(arguments) -> int:
     if len(results) > 1:
         print(f"{sum(_n_legal(result.algorithm) > 0 for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(visible(file) for file in files), flush=True)
+    write_waypoints(trade_off, arguments)
     history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
     figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
     print("figures: " + ", ".join(visible(file) for file in figures))

@@ -24,6 +24,8 @@ from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.pictures import png
 from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.search.smoother import Smoother
+from pymoo_gridpath.search.waypoints import Waypoints
 from pymoo_gridpath.versions import versions
 
 #: What members of a trade-off set go by, in the order in which tables and figures show them; of paths in time, one is the
@@ -74,6 +76,8 @@ class PathRecord:
         The row of decision variables that codes it.
     grid : OccupancyGrid, optional
         The map that it leads across.
+    smoother : Smoother, optional
+        What makes waypoints of the paths of its set.
     """
 
     index: int
@@ -90,10 +94,47 @@ class PathRecord:
     objectives: dict[str, float]
     genes: np.ndarray = field(repr=False)
     grid: OccupancyGrid | None = field(default=None, repr=False)
+    smoother: Smoother | None = field(default=None, repr=False)
 
     def as_dict(self) -> dict:
-        """Return the record as a dict of its attributes but for the map, arrays as arrays."""
-        return {name: value for name, value in vars(self).items() if name != "grid"}
+        """Return the record as a dict of its attributes but for what it shares with others of its set, arrays as arrays."""
+        return {name: value for name, value in vars(self).items() if name not in ("grid", "smoother")}
+
+    def waypoints(self, tolerance: float | None = None, spacing: float | None = None) -> Waypoints:
+        """Return the few points between which the path can be driven straight, without its stairs.
+
+        Each sees the next, as with the planners that go by line of sight, and the line is as clear of obstacles as the path was
+        there: at each share of a piece's length it is at most ``tolerance`` nearer to an obstacle than the path at the same
+        share of the stretch that the piece replaces. Safe detours stay detours so, which they would not if only the least
+        clearance of the whole path had to be kept. Distances are from the sides of the obstacles before they grew by the
+        robot's radius, of all points of the line and not of some. From each waypoint the next is the last of the path for which
+        that holds; a step between neighbouring cells of the path always may be taken.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            In metres, or in cells on a map that has no metres; half a cell by default, since centres of cells stand for points
+            half a cell around. Infinity asks for lines of sight alone. Below a 256th of a cell only steps in line are joined.
+        spacing : float, optional
+            Put points between, none further from the next, in the same unit. The corners stay.
+
+        Returns
+        -------
+        Waypoints
+            With length, turn, and least and mean clearance, of the path too (``before``), and ``to_csv``, ``to_nav_path`` and
+            ``to_f1tenth``. Of a path in time they are its cells, a tick each, and neither argument is taken.
+
+        Raises
+        ------
+        GridPathError
+            If the path is not legal, is of no set, or an argument is out of its range.
+        """
+        if self.smoother is None:
+            raise GridPathError("the path is of no set and knows no map, expected a member of a TradeOffSet")
+        if self.interfering_cells:
+            crossed = counted(self.interfering_cells, "occupied cell")
+            raise GridPathError(f"path {self.index} crosses {crossed}, expected a legal path to drive along")
+        return self.smoother.waypoints(self.cells, tolerance, spacing)
 
     def _repr_html_(self) -> str:
         return drawn.record_html(self)
@@ -340,7 +381,13 @@ class TradeOffSet:
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
             grid=grid,
+            smoother=self.smoother,
         )
+
+    @functools.cached_property
+    def smoother(self) -> Smoother:
+        """What makes waypoints of the paths, see `PathRecord.waypoints`."""
+        return Smoother(self.problem.grid, self.problem.start, self.problem.representation.timed)
 
     # -- words and files ----------------------------------------------------------------------------------------------
 

@@ -42,8 +42,8 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         ``map`` (name, size in cells, corner: the cell of the whole map that is (0, 0) here, resolution or None, unit, origin),
         ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, values with None for infinity), ``names`` (name
         and path), ``occupied`` and ``grown`` (a bit a cell, row by row from the bottom; which of the first are so because
-        obstacles grew, or None), ``field`` (0 to 255, or None), ``counts``,
-        ``starts`` and ``steps`` (see `packed_paths`), and texts.
+        obstacles grew, or None), ``field`` (0 to 255, or None), ``counts``, ``starts`` and ``steps``
+        (see `packed_paths`), ``waypoints`` (see `packed_waypoints`), and texts.
     """
     problem = trade_off.problem
     box = drawn_box(trade_off)
@@ -74,6 +74,7 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "grown_label": _grown_label(problem.grid),
         "field": None if field is None else packed(field),
         **packed_paths(cells),
+        "waypoints": packed_waypoints(trade_off),
     }
 
 
@@ -130,6 +131,19 @@ def unpacked_paths(data: dict) -> list[np.ndarray]:
     steps = np.stack(signed, axis=1) if data["steps"]["kind"] == "u1" else coded.reshape(-1, 2)
     ends = np.cumsum(counts.astype(np.int64) - 1)[:-1]
     return [np.cumsum([first, *part], axis=0) for first, part in zip(starts, np.split(steps, ends), strict=True)]
+
+
+def packed_waypoints(trade_off) -> dict | None:
+    """Return which cells of the paths are their waypoints: how many each has, and the steps up to each from the last.
+
+    None of paths that are not legal, which nobody is to drive along.
+    """
+    if not trade_off.feasible:
+        return None
+    places = [trade_off.smoother.places(record.cells) for record in trade_off]
+    counts = np.array([len(one) for one in places], dtype=np.uint32)
+    gaps = np.concatenate([np.diff(one, prepend=0) for one in places]).astype(np.uint32)
+    return {"counts": packed(counts), "gaps": packed(gaps)}
 
 
 def _levels(field: np.ndarray, grid: OccupancyGrid) -> np.ndarray | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -64,7 +65,7 @@ class Nearest:
         least = float(_distances(self.above, self.below, *np.ascontiguousarray(points.T, dtype=float)).min())
         if not 0.0 < least < np.inf:
             return least
-        for a, b in zip(points[:-1], points[1:], strict=True):
+        for a, b in pairwise(points):
             # Only cells nearer than what is known can make it less.
             low = np.maximum(np.floor(np.minimum(a, b) - least).astype(int), 0)
             high = np.ceil(np.maximum(a, b) + least).astype(int) + 1
@@ -126,13 +127,13 @@ def _distances(above, below, x, y):
 
 @kernel
 def distance(above, below, x, y):
-    """Return the distance from a point to the nearest occupied cell, see `Nearest`; columns are looked at from the point out."""
+    """Return the distance from a point to the nearest occupied cell, see `Nearest`; columns are looked at from it outwards."""
     height, width = above.shape
     best = np.inf
     if height == 0:
         return best
-    row = min(max(int(math.floor(y + 0.5)), 0), height - 1)
-    column = min(max(int(math.floor(x + 0.5)), 0), width - 1)
+    row = min(max(math.floor(y + 0.5), 0), height - 1)
+    column = min(max(math.floor(x + 0.5), 0), width - 1)
     k = 0
     while k <= max(column, width - 1 - column):
         done = True

@@ -5,6 +5,7 @@ import csv
 import html
 import importlib.util
 import io
+import itertools
 import json
 import zlib
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 from page_sets import HOSTILE, exact_set, grown_set
 from PIL import Image
 
+from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet
 from pymoo_gridpath.explorer import explore, save_page
 from pymoo_gridpath.explorer.data import packed_paths
 
@@ -269,16 +271,28 @@ def test_the_waypoints_of_a_path_are_saved(open_page):
     page = open_page(found, "#1")
     page.run("document.getElementById('download').click(); 0")
     rows = list(csv.DictReader(io.StringIO(page.downloaded("room-path-1.csv").decode())))
-    assert [[int(row["cell_x"]), int(row["cell_y"])] for row in rows] == found[1].cells.tolist()
-    points = [[float(row["x_m"]), float(row["y_m"])] for row in rows]
-    np.testing.assert_allclose(points, found[1].points, rtol=1e-14, atol=1e-14)
+    assert list(rows[0]) == ["x", "y", "yaw"]
+    for k in range(len(found)):
+        rows = list(csv.DictReader(io.StringIO(page.run(f"waypoints({k})"))))
+        made = found[k].waypoints()
+        poses = [[float(row[key]) for key in ("x", "y", "yaw")] for row in rows]
+        np.testing.assert_allclose(poses, np.column_stack([made.points, made.yaw]), rtol=1e-14, atol=1e-14)
 
 
 def test_a_map_in_cells_gives_cells(open_page):
     found = exact_set(resolution=None)
     page = open_page(found)
     lines = page.run("waypoints(0)").splitlines()
-    assert lines[0] == "cell_x,cell_y" and [[*map(int, line.split(","))] for line in lines[1:]] == found[0].cells.tolist()
+    corners = found[0].waypoints().cells.tolist()
+    assert lines[0] == "x,y,yaw" and [[*map(int, line.split(",")[:2])] for line in lines[1:]] == corners
+
+
+def test_nobody_is_to_drive_along_what_is_not_legal(open_page):
+    problem = GridPathProblem(OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 1, 0]]), (0, 2), (2, 2), "integer", axis="x")
+    rows = np.array(list(itertools.product(*map(range, problem.xl.astype(int), problem.xu.astype(int) + 1))))
+    found = TradeOffSet.from_genes(problem, rows[problem.decode(rows).interfering_cells > 0])
+    assert not found.feasible and not open_page(exact_set()).run("document.getElementById('download').hidden")
+    assert open_page(found).run("document.getElementById('download').hidden")
 
 
 @pytest.mark.parametrize(
