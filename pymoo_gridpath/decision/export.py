@@ -17,7 +17,7 @@ from pymoo_gridpath.errors import GridPathError, counted
 FORMAT = "pymoo_gridpath trade-off set"
 FORMAT_VERSION = 3
 
-_HEADERS = {
+HEADERS = {
     "length": "length",
     "length_m": "length [m]",
     "vulnerability": "vulnerability",
@@ -91,11 +91,11 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     """Return a table for terminals; see `TradeOffSet.table`."""
     if max_rows is not None:
         max_rows = checks.whole("max_rows", max_rows, 0)
-    measures = trade_off.measures
+    measures = shown_measures(trade_off)
     rows = _rows_shown(trade_off, max_rows)
     columns = [["path", *(str(k) for k in rows)]]
     for name, values in measures.items():
-        columns.append([_HEADERS.get(name) or name, *_numbers(values[rows])])
+        columns.append([HEADERS.get(name) or name, *_numbers(values[rows])])
     marks = ["", *(", ".join(trade_off.names(k)) for k in rows)]
     widths = [max(map(len, column)) for column in columns]
     lines = [_heading(trade_off)]
@@ -106,13 +106,20 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     if hidden:
         lines.append(f"... and {hidden} more")
     if trade_off.least_length is not None:
-        metres = trade_off.least_length * trade_off.problem.grid.resolution
-        shortest = f"{trade_off.least_length:.3f} ({metres:.3f} m)"
+        resolution = trade_off.problem.grid.resolution
+        cells = trade_off.least_length
+        shortest = f"{cells:.3f}" if resolution is None else f"{cells * resolution:.3f} m"
         still = " where nothing moves" if trade_off.problem.representation.timed else ""
         lines.append(f"for comparison, the shortest of all paths on this grid{still} has length {shortest}")
     if trade_off.advice:
         lines.append(f"NOTE: {trade_off.advice}")
     return "\n".join(lines)
+
+
+def shown_measures(trade_off) -> dict[str, np.ndarray]:
+    """Return the measures that tables show: of those that there are in cells and in metres, the metres."""
+    measures = trade_off.measures
+    return {name: values for name, values in measures.items() if f"{name}_m" not in measures}
 
 
 def _heading(trade_off) -> str:

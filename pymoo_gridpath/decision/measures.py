@@ -8,13 +8,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from pymoo_gridpath.fields import BoxedField, obstacle_potential
-from pymoo_gridpath.objectives import Vulnerability, boxed_field_of, prepared
+from pymoo_gridpath.objectives import Risk, Vulnerability, boxed_field_of, prepared
 from pymoo_gridpath.problems.members import are_legal
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search.path_clearance import least_distances
 
 # Metres are given to a nanometre: what lies below is the rounding of numbers.
 _DECIMALS = 9
+
+
+def risk_of(problem) -> Risk | None:
+    """Return the objective by which a problem says how safe paths are, None if it has none."""
+    return next((objective for objective in problem.objectives if isinstance(objective, Risk)), None)
 
 
 class PathMeasures:
@@ -33,19 +38,22 @@ class PathMeasures:
     Attributes
     ----------
     field : numpy.ndarray, shape (height, width) of the representation's box
-        The potential whose sum is the vulnerability; the default one if that is no such sum.
+        The potential whose sum the problem minimises as its risk, or else whose sum is the vulnerability; the default one if
+        that is no such sum.
     """
 
     def __init__(self, problem):
         representation_of(problem)
         given = [objective for objective in problem.objectives if objective.name == Vulnerability.name]
         self.problem = problem
-        self._objective = given[0] if given else Vulnerability()
+        self._objective = given[0] if given else Vulnerability().on(problem.grid)
         box = problem.representation.box
         field = boxed_field_of(self._objective, problem.grid, box)
+        self._prepared = prepared(self._objective, problem.representation, field)
+        if (risk := risk_of(problem)) is not None and risk is not self._objective:
+            field = boxed_field_of(risk, problem.grid, box)
         inside = field.inside if isinstance(field, BoxedField) else field
         self.field = obstacle_potential(problem.grid, box=box) if inside is None else inside
-        self._prepared = prepared(self._objective, problem.representation, field)
 
     def vulnerability(self, paths) -> np.ndarray:
         """Return the vulnerability of N paths, shape (N,)."""
@@ -58,7 +66,7 @@ class PathMeasures:
         return are_legal(paths.interfering_cells, over)
 
     def clearance_m(self, cells: Sequence[np.ndarray]) -> np.ndarray:
-        """Return the room between a robot on its way and the obstacles of the map as they were before they grew.
+        """Return the room between a robot on its way and the obstacles of a map in metres, as they were before they grew.
 
         Parameters
         ----------
@@ -74,4 +82,5 @@ class PathMeasures:
         # What keeps the robot from a cell is no further away than it is wide.
         reach = math.ceil(grid.radius_in_cells(grid.robot_radius)) + 2
         away = least_distances(grid.original.occupied, cells, box.grown(reach, grid.shape))
-        return np.round(away * grid.resolution - grid.robot_radius, _DECIMALS) + 0.0
+        metres = away * grid.check_resolution("a clearance in metres")
+        return np.round(metres - grid.robot_radius, _DECIMALS) + 0.0

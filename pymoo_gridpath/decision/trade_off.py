@@ -17,7 +17,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.known import find_algorithm
 from pymoo_gridpath.decision import drawn, export, provenance
 from pymoo_gridpath.decision.knee import knee_point
-from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.decision.measures import PathMeasures, risk_of
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
@@ -50,10 +50,12 @@ class PathRecord:
         Which of `NAMES` it goes by, or "earliest".
     cells : numpy.ndarray of int, shape (n_cells, 2)
         Visited cells (x, y), start and goal included; of a path in time its cell at each tick.
-    points : numpy.ndarray of float, shape (n_cells, 2)
-        Their centres in metres in the map's frame.
-    length, length_m : float
-        Length in cells and in metres.
+    points : numpy.ndarray of float, shape (n_cells, 2), or None
+        Their centres in metres in the map's frame; None on a map in cells.
+    length : float
+        Length in cells.
+    length_m : float or None
+        Length in metres; None on a map in cells.
     vulnerability : float
         Sum of the obstacles' potential over the visited cells.
     turn : float
@@ -63,11 +65,11 @@ class PathRecord:
     clearance : float
         Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid. Of a path in time
         also from those of obstacles that move, at the same tick.
-    clearance_m : float
+    clearance_m : float or None
         Least distance in metres between the robot on its way and the map's own obstacles, those of `OccupancyGrid.original`: of
         the straight lines through the centres of the cells from the nearest edge of an occupied cell, less the `robot_radius`.
         It is ``inf`` on an empty map, and never below 0 of a legal path on a grid that was inflated once, unless corners may be
-        cut. Obstacles that move of paths in time are not among them.
+        cut. Obstacles that move of paths in time are not among them. None on a map in cells.
     objectives : dict of str to float
         The plain objectives of the problem.
     genes : numpy.ndarray, shape (n_var,)
@@ -81,14 +83,14 @@ class PathRecord:
     index: int
     names: tuple[str, ...]
     cells: np.ndarray = field(repr=False)
-    points: np.ndarray = field(repr=False)
+    points: np.ndarray | None = field(repr=False)
     length: float
-    length_m: float
+    length_m: float | None
     vulnerability: float
     turn: float
     interfering_cells: int
     clearance: float
-    clearance_m: float
+    clearance_m: float | None
     objectives: dict[str, float]
     genes: np.ndarray = field(repr=False)
     grid: OccupancyGrid | None = field(default=None, repr=False)
@@ -159,7 +161,8 @@ class TradeOffSet:
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
         ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
-        [cells], ``clearance_m`` and every other objective of the problem by its name; see `PathRecord`.
+        [cells], ``clearance_m`` and every other objective of the problem by its name; see `PathRecord`. Maps in cells have none
+        in metres.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -168,9 +171,10 @@ class TradeOffSet:
     Notes
     -----
     ``trade_off["knee"]`` or ``trade_off.knee`` is a `PathRecord`; so is ``trade_off[0]``. `shortest`, `safest` and `smoothest`
-    have the least length, vulnerability and turn *of the set*, whatever its objectives; ties go to the path that is better
-    in the first objective that differs. `knee` is defined in `knee_point`, on the objectives of the problem. Of paths in time,
-    those of a `TimedPathProblem`, `earliest` is the one that arrives first.
+    have the least length, vulnerability and turn *of the set*, whatever its objectives; of a problem with another `Risk`, the
+    safest path is that of which this is least. Ties go to the path that is better in the first objective that differs. `knee`
+    is defined in `knee_point`, on the objectives of the problem. Of paths in time, those of a `TimedPathProblem`, `earliest` is
+    the one that arrives first.
 
     References
     ----------
@@ -274,14 +278,15 @@ class TradeOffSet:
         length = np.asarray(self.paths.length, dtype=float)
         found = {
             "length": length,
-            "length_m": length * grid.resolution,
+            **({} if grid.resolution is None else {"length_m": length * grid.resolution}),
             "vulnerability": measures.vulnerability(self.paths),
             "turn": np.asarray(self.paths.turn),
             "interfering_cells": np.asarray(self.paths.interfering_cells),
             "clearance": np.array([field.take(cells @ (1, grid.width)).min() for cells in self._cells]),
         }
         found["clearance"] = np.minimum(found["clearance"], self.paths.mover_distance)
-        found["clearance_m"] = measures.clearance_m(self._cells)
+        if grid.resolution is not None:
+            found["clearance_m"] = measures.clearance_m(self._cells)
         for name, values in zip(self.objective_names, self.F.T, strict=True):
             found.setdefault(name, values)
         return found
@@ -297,9 +302,16 @@ class TradeOffSet:
     def named(self) -> dict[str, int]:
         """Index of the path that goes by each of `NAMES`, and of paths in time that of the "earliest"."""
         # Paths stand in the order of their objectives, so the first of equal ones is the better.
-        least = {name: int(np.argmin(self.measures[of])) for name, of in _LEAST.items() if of in self.measures}
+        least_of = {**_LEAST, "safest": self._safety}
+        least = {name: int(np.argmin(self.measures[of])) for name, of in least_of.items() if of in self.measures}
         found = {**least, "knee": knee_point(self.F)}
         return {name: found[name] for name in names_for(self.objective_names)}
+
+    @property
+    def _safety(self) -> str:
+        """The measure of which the safest path has the least."""
+        risk = risk_of(self.problem)
+        return _LEAST["safest"] if risk is None else risk.name
 
     def index(self, name: str) -> int:
         """Return the index of the path that goes by a name.
@@ -330,7 +342,7 @@ class TradeOffSet:
 
     @property
     def safest(self) -> PathRecord:
-        """The path of least vulnerability."""
+        """The path of least risk: by default of least vulnerability."""
         return self["safest"]
 
     @property
@@ -353,22 +365,22 @@ class TradeOffSet:
         """Return the path at an index or of a name."""
         k = self.index(key) if isinstance(key, str) else range(len(self))[key]
         value = {name: values[k].item() for name, values in self.measures.items()}
-        cells = self._cells[k]
+        cells, grid = self._cells[k], self.problem.grid
         return PathRecord(
             index=k,
             names=self.names(k),
             cells=cells,
-            points=self.problem.grid.to_metres(cells),
+            points=None if grid.resolution is None else grid.to_metres(cells),
             length=value["length"],
-            length_m=value["length_m"],
+            length_m=value.get("length_m"),
             vulnerability=value["vulnerability"],
             turn=value["turn"],
             interfering_cells=value["interfering_cells"],
             clearance=value["clearance"],
-            clearance_m=value["clearance_m"],
+            clearance_m=value.get("clearance_m"),
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
-            grid=self.problem.grid,
+            grid=grid,
             smoother=self.smoother,
         )
 
@@ -401,13 +413,28 @@ class TradeOffSet:
 
     @property
     def advice(self) -> str:
-        """What to try where the shortest path found is over 5 % longer than the shortest of all; empty where it is not.
+        """What to try where there is nothing to choose from, or where the paths are long; empty where all is well.
 
-        It is empty, too, if length is no objective, if the paths are not legal, and where the shortest of all may not be one of
-        them: under a potential limit, and among obstacles that move.
+        The front is one point if a single path is the best by all of several objectives. The shortest path found is long if it
+        is over 5 % longer than the shortest of all. Of that nothing is said if length is no objective, if the paths are not
+        legal, and where the shortest of all may not be one of them: under a potential limit, and among obstacles that move.
         """
+        if self.problem.start == self.problem.goal:
+            return ""
+        return "; ".join(filter(None, (self._of_one_point, self._of_long_paths)))
+
+    @property
+    def _of_one_point(self) -> str:
+        if len(self) > 1 or not self.feasible or len(self.objective_names) == 1:
+            return ""
+        risk = risk_of(self.problem)
+        ways = [*filter(None, [risk and risk.wider]), "a further objective, such as turn,"]
+        return f"the front found is one point, a path that is best by every objective; {' or '.join(ways)} may give a choice"
+
+    @property
+    def _of_long_paths(self) -> str:
         others = self.problem.potential_limit is not None or self.problem.representation.timed
-        if not self.least_length or not self.feasible or others:
+        if self.least_length is None or not self.feasible or others:
             return ""
         excess = float(self.measures["length"].min()) / self.least_length - 1.0
         if excess <= _MUCH_LONGER:
@@ -431,7 +458,7 @@ class TradeOffSet:
         return f"{', '.join(others)} or {last}" if others else last
 
     def table(self, max_rows: int | None = None) -> str:
-        """Return a plain text table, one line a path, with the names of those that have one.
+        """Return a plain text table, one line a path, with the names of those that have one, in metres where the map has them.
 
         Where length is an objective a line says how long the shortest of all paths is, and another, if those found are much
         longer, what to try: `least_length` and `advice`.

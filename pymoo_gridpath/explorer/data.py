@@ -14,15 +14,19 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath.decision.drawn import drawn_box, drawn_field
+from pymoo_gridpath.decision.export import shown_measures
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.grid import Box, OccupancyGrid
 
 # Measures are for people to compare: so many digits tell apart all that figures could.
 _DIGITS = 7
 
-# Measures in cells that are metres on a map which has them, and what a page calls them.
-_LENGTHS = {"length": "Length", "clearance": "Least clearance"}
+# What a page calls measures, and their units.
 _LABELS = {
+    "length": ("Length", "cells"),
+    "length_m": ("Length", "m"),
+    "clearance": ("Least clearance", "cells"),
+    "clearance_m": ("Clearance of the robot", "m"),
     "turn": ("Total turn", "\u00b0"),
     "vulnerability": ("Vulnerability", ""),
     "interfering_cells": ("Occupied cells crossed", ""),
@@ -44,7 +48,7 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     problem = trade_off.problem
     box = drawn_box(trade_off)
     grid = problem.grid.crop(box)
-    resolution = resolution_of(problem.grid)
+    resolution = problem.grid.resolution
     corner = np.array([box.x0, box.y0])
     cells = [np.asarray(record.cells) - corner for record in trade_off]
     field = _levels(drawn_field(trade_off, box), grid)
@@ -60,10 +64,10 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "start": (np.asarray(problem.start) - corner).tolist(),
         "goal": (np.asarray(problem.goal) - corner).tolist(),
         "summary": _summary(trade_off, box, resolution),
-        "caution": "" if trade_off.feasible else f"Not feasible: {trade_off.infeasibility}.",
+        "caution": _caution(trade_off),
         "file_name": re.sub(r"[^A-Za-z0-9._-]+", "-", title).strip("-.")[:60] or "map",
         "field_label": "Potential",
-        "columns": _columns(trade_off, resolution),
+        "columns": _columns(trade_off),
         "names": [{"name": name, "path": k} for name, k in trade_off.named.items()] if trade_off.feasible else [],
         "occupied": packed(np.packbits(grid.occupied)),
         "grown": None if grid.grown_cells is None else packed(np.packbits(grid.grown_cells)),
@@ -76,12 +80,8 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
 
 def _grown_label(grid: OccupancyGrid) -> str:
     """Return what the cells are called in which a robot would touch an obstacle."""
-    return f"Too near for {'its radius' if grid.footprint is None else 'its footprint'} of {grid.robot_radius:.3g} m"
-
-
-def resolution_of(grid: OccupancyGrid) -> float | None:
-    """Return the metres a cell of a map that has them; cells of 1 are those of a map that says nothing."""
-    return None if grid.resolution in (None, 1.0) else grid.resolution
+    unit = "cells" if grid.resolution is None else "m"
+    return f"Too near for {'a radius' if grid.footprint is None else 'a footprint'} of {grid.robot_radius:.3g} {unit}"
 
 
 def packed(array: np.ndarray) -> dict:
@@ -153,6 +153,13 @@ def _levels(field: np.ndarray, grid: OccupancyGrid) -> np.ndarray | None:
     return np.rint(free / top * 255.0).astype(np.uint8) if 0.0 < top < np.inf else None
 
 
+def _caution(trade_off) -> str:
+    if not trade_off.feasible:
+        return f"Not feasible: {trade_off.infeasibility}."
+    advice = trade_off.advice
+    return f"{advice[0].upper()}{advice[1:]}." if advice else ""
+
+
 def _summary(trade_off, box: Box, resolution: float | None) -> str:
     problem = trade_off.problem
     whole = problem.grid
@@ -165,27 +172,24 @@ def _summary(trade_off, box: Box, resolution: float | None) -> str:
     return f"{counted(len(trade_off), 'trade-off path')} {ends}; {size}"
 
 
-def _columns(trade_off, resolution: float | None) -> list[dict]:
-    """Return the objectives of a set, and after them its other measures."""
-    names = trade_off.objective_names
-    others = [name for name in trade_off.measures if name not in names and name != "length_m"]
+def _columns(trade_off) -> list[dict]:
+    """Return the objectives of a set, and after them its other measures, lengths in metres where the map has them."""
+    measures, columns = shown_measures(trade_off), []
     if trade_off.feasible:
-        others.remove("interfering_cells")  # they cross none
-    labels = {objective.name: objective.label for objective in trade_off.problem.objectives}
-    columns = []
-    for name in [*names, *others]:
-        values = np.asarray(trade_off.measures[name])
-        if name in _LENGTHS:
-            label, unit = _LENGTHS[name], "cells" if resolution is None else "m"
-            values = values * (1.0 if resolution is None else resolution)
-        elif name in _LABELS:
-            label, unit = _LABELS[name]
-        else:
-            label, unit = _split(visible(labels.get(name, name)))
-        columns.append(
-            {"key": name, "label": label, "unit": unit, "objective": name in names, "values": [*map(_number, values.tolist())]}
-        )
-    return columns
+        del measures["interfering_cells"]  # they cross none
+    for objective in trade_off.problem.objectives:
+        label, scale = objective.in_words(trade_off.problem.grid)
+        same = f"{objective.name}_m" if objective.name == "length" and scale != 1.0 else objective.name
+        words = _LABELS.get(same) or _split(visible(label))
+        columns.append(_column(objective.name, words, True, trade_off.measures[objective.name] * scale))
+        measures.pop(same, None)
+    return columns + [_column(name, _LABELS.get(name) or (name, ""), False, values) for name, values in measures.items()]
+
+
+def _column(key: str, words: tuple[str, str], objective: bool, values: np.ndarray) -> dict:
+    label, unit = words
+    numbers = [*map(_number, np.asarray(values).tolist())]
+    return {"key": key, "label": label, "unit": unit, "objective": objective, "values": numbers}
 
 
 def _split(label: str) -> tuple[str, str]:

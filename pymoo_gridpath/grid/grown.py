@@ -32,6 +32,7 @@ class GrownCells(Cells):
     origin: Any
     name: Any
     replace: Any
+    check_resolution: Any
 
     _growth: Growth | None = None
 
@@ -47,7 +48,7 @@ class GrownCells(Cells):
 
     @property
     def robot_radius(self) -> float:
-        """By how many metres obstacles grew in all: the radius of the robot that this grid is for, 0 of a point.
+        """By how many metres obstacles grew in all (of a map in cells, how many cells): the robot's radius, 0 of a point.
 
         Of a footprint it is the distance of its farthest corner from the robot's origin; of a grid that was inflated twice it
         is the sum.
@@ -72,7 +73,7 @@ class GrownCells(Cells):
         original : OccupancyGrid
             Of the same shape, resolution and origin; each of its occupied cells is occupied here.
         robot_radius : float
-            Metres by which they grew, zero or more.
+            Metres by which they grew, or on a map in cells the number of cells; zero or more.
         footprint : sequence of (float, float), optional
             Corners of the robot, if they grew by these.
 
@@ -129,7 +130,8 @@ class GrownCells(Cells):
         Raises
         ------
         GridError
-            If the radius is negative or not finite, the footprint is no polygon, or both are given.
+            If the radius is negative or not finite, the footprint is no polygon, both are given, or the map is one in cells,
+            for which there is `grow`.
 
         Warns
         -----
@@ -165,7 +167,7 @@ class GrownCells(Cells):
         """
         cells = checks.number("growth", cells, 0.0, expected="a number of cells, zero or more", error=GridError)
         occupied = self._grown(cells)
-        return self if occupied is self._occupied else self._as_grown(occupied, cells * self.resolution, None)
+        return self if occupied is self._occupied else self._as_grown(occupied, cells * self._cell, None)
 
     def radius_in_cells(self, radius: float) -> float:
         """Return the radius of a robot, given in metres, in cells; at most the width and height together, which cover all.
@@ -173,10 +175,17 @@ class GrownCells(Cells):
         Raises
         ------
         GridError
-            If the radius is negative or not finite.
+            If the radius is negative or not finite, or not zero on a map in cells.
         """
         radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
-        return min(radius / self.resolution, float(sum(self.shape)))
+        if radius == 0.0:
+            return 0.0
+        return min(radius / self.check_resolution("a radius in metres"), float(sum(self.shape)))
+
+    @property
+    def _cell(self) -> float:
+        """The side of a cell in the unit of the map: metres, or cells."""
+        return 1.0 if self.resolution is None else self.resolution
 
     def _grown(self, cells: float) -> np.ndarray:
         """Return the occupied cells grown by a disc, or themselves if it is no wider than a cell."""

@@ -101,9 +101,8 @@ def check_grown(grown: OccupancyGrid, start: Sequence[int], goal: Sequence[int],
 
 def robot_of(grown: OccupancyGrid) -> str:
     """Return in words what obstacles were grown by."""
-    if grown.footprint is None:
-        return f"the robot's radius of {grown.robot_radius:g} m"
-    return f"the robot's footprint, which reaches {grown.robot_radius:g} m"
+    size = f"{grown.robot_radius:g} {'cells' if grown.resolution is None else 'm'}"
+    return f"the robot's radius of {size}" if grown.footprint is None else f"the robot's footprint, which reaches {size}"
 
 
 # -- in metres ------------------------------------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ def plot_front(
     reference_label: str = "reference front",
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the front of a trade-off set with its named paths marked.
+    """Draw the front of a trade-off set with its named paths marked; lengths are in metres where the map has them.
 
     Parameters
     ----------
@@ -58,6 +58,7 @@ def plot_front(
     columns = _columns(check_set(trade_off), objectives)
     groups = style.by_path(trade_off, which)
     other = as_reference(trade_off, reference)
+    other = None if other is None else _in_words(trade_off, other)
     reference_label = visible(checks.text("reference_label", reference_label))
     style.check_axes(ax)
     solid = len(columns) == 3
@@ -111,7 +112,7 @@ def staircase(F: np.ndarray) -> np.ndarray:
 
 
 def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: str) -> None:
-    F = trade_off.F[:, columns]
+    F = _in_words(trade_off, trade_off.F)[:, columns]
     whole = len(columns) == trade_off.F.shape[1]
     lines = [F[[k]] for k in range(len(F))]
     if other is not None:
@@ -129,7 +130,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         lines.append(stairs)
     rest = [k for k in range(trade_off.F.shape[1]) if k not in columns]
     if len(rest) == 1:
-        values = trade_off.F[:, rest[0]]
+        values = _in_words(trade_off, trade_off.F)[:, rest[0]]
         low, high = style.span(values)
         look = {"c": values, "cmap": "cividis", "vmin": low, "vmax": high}
         dots = ax.scatter(*F.T, s=18, **look, zorder=3, label="trade-off paths")
@@ -158,7 +159,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
 
 
 def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> None:
-    F = trade_off.F[:, columns]
+    F = _in_words(trade_off, trade_off.F)[:, columns]
     if other is not None:
         ax.scatter(
             *other[:, columns].T, s=10, facecolors="none", edgecolors=style.REFERENCE, linewidths=0.5, label=reference_label
@@ -193,4 +194,11 @@ def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> 
 
 
 def _label(trade_off, column: int) -> str:
-    return trade_off.problem.objectives[column].label
+    problem = trade_off.problem
+    return problem.objectives[column].in_words(problem.grid)[0]
+
+
+def _in_words(trade_off, F: np.ndarray) -> np.ndarray:
+    """Return points in the units that the axes say."""
+    problem = trade_off.problem
+    return F * [objective.in_words(problem.grid)[1] for objective in problem.objectives]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +19,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import check_field, obstacle_potential
 from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 from pymoo_gridpath.plotting import style
-
-Units = Literal["cells", "m"]
+from pymoo_gridpath.plotting.style import Units
 
 #: Larger maps are drawn without lines between cells.
 MAX_RULED = 32
@@ -34,7 +33,7 @@ def plot_map(
     potential: bool | np.ndarray = True,
     start: Sequence[int] | None = None,
     goal: Sequence[int] | None = None,
-    units: Units = "cells",
+    units: Units | None = None,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
@@ -49,8 +48,9 @@ def plot_map(
         The field under the cells; True computes `obstacle_potential`, False draws none.
     start, goal : (int, int), optional
         Cells (x, y), marked by a circle and a star.
-    units : {"cells", "m"}, default "cells"
-        What the axes measure. Metres are those of the map's frame, with its origin and yaw: a turned map is drawn turned.
+    units : {"cells", "m"}, optional
+        What the axes measure, by default metres where the map has them. Metres are those of the map's frame, with its origin
+        and yaw: a turned map is drawn turned.
     legend : bool, default True
         Whether to name the marks in a legend beside the map.
     ax : matplotlib.axes.Axes, optional
@@ -63,10 +63,11 @@ def plot_map(
     Raises
     ------
     GridPathError
-        If the units are unknown, the field has another shape than the grid, or start or goal is off the grid.
+        If the units are unknown, or metres on a map in cells; the field has another shape than the grid; or start or goal is
+        off the grid.
     """
     check_grid(grid)
-    style.check_units(units)
+    units = style.check_units(units, grid)
     style.check_axes(ax)
     legend = checks.flag("legend", legend)
     field = _field(grid, potential)
@@ -91,7 +92,7 @@ def plot_paths(
     which: Sequence[str] | None = None,
     all_paths: bool = True,
     potential: bool | np.ndarray = True,
-    units: Units = "cells",
+    units: Units | None = None,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
@@ -122,14 +123,14 @@ def plot_paths(
     Raises
     ------
     GridPathError
-        If a name or the units are unknown.
+        If a name or the units are unknown, or metres on a map in cells.
 
     References
     ----------
     Ahmed and Deb (2013), figures 5 to 7.
     """
     groups = style.by_path(check_set(trade_off), which)
-    style.check_units(units)
+    units = style.check_units(units, trade_off.problem.grid)
     style.check_axes(ax)
     all_paths, legend = checks.flag("all_paths", all_paths), checks.flag("legend", legend)
     problem = trade_off.problem
@@ -216,7 +217,7 @@ def _cells_to_axes(grid: OccupancyGrid, units: Units, box: Box) -> Affine2D:
     if units == "cells":
         return Affine2D().translate(box.x0, box.y0)
     x0, y0, yaw = grid.origin
-    return Affine2D().translate(0.5, 0.5).scale(grid.resolution).rotate(yaw).translate(x0, y0)
+    return Affine2D().translate(0.5, 0.5).scale(grid.check_resolution("an axis in metres")).rotate(yaw).translate(x0, y0)
 
 
 def _draw_mark(

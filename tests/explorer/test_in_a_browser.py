@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from page_sets import HOSTILE, exact_set
+from page_sets import HOSTILE, exact_set, grown_set
 from PIL import Image
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet
@@ -133,6 +133,27 @@ def test_the_map_stands_upright(open_page):
     )
     dark = int(page.run("color('occupied')")[1:3], 16)
     np.testing.assert_array_equal(np.array(dots).reshape(12, 16) == dark, found.problem.grid.occupied)
+
+
+def test_obstacles_are_told_from_what_is_too_near_to_them(open_page):
+    found = grown_set()
+    page = open_page(found)
+    grid = found.problem.grid
+    labels = page.run("Array.from(document.querySelectorAll('#layers label'), (label) => label.textContent)")
+    assert labels[:2] == ["Obstacles", "Too near for a radius of 0.3 m"]
+
+    def cells_of(name):
+        read = "Array.from(map.cells.getContext('2d').getImageData(0, 0, 16, 12).data.filter((_, k) => k % 4 < 3))"
+        dots = np.array(page.run(f"map.paintCells(), {read}")).reshape(12, 16, 3)[::-1]
+        return (dots == page.run(f"parts(color('{name}'))")).all(axis=2)
+
+    np.testing.assert_array_equal(cells_of("occupied"), grid.original.occupied)
+    np.testing.assert_array_equal(cells_of("grown"), grid.occupied & ~grid.original.occupied)
+    page.run("document.querySelectorAll('#layers input')[1].click(); 0")
+    assert not cells_of("grown").any()
+    np.testing.assert_array_equal(cells_of("occupied"), grid.original.occupied)
+    page.run("document.querySelectorAll('#layers input')[1].click(); document.querySelector('#layers input').click(); 0")
+    assert not cells_of("occupied").any() and cells_of("grown").any()
 
 
 def test_everything_is_done_by_keys_alone(open_page):
@@ -259,7 +280,7 @@ def test_the_waypoints_of_a_path_are_saved(open_page):
 
 
 def test_a_map_in_cells_gives_cells(open_page):
-    found = exact_set(resolution=1.0)
+    found = exact_set(resolution=None)
     page = open_page(found)
     lines = page.run("waypoints(0)").splitlines()
     corners = found[0].waypoints().cells.tolist()

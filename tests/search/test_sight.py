@@ -140,6 +140,8 @@ def test_waypoints_are_in_cells_and_in_metres():
     waypoints = Waypoints(grid, np.array([[0, 0], [3, 4], [4, 4]]))
     assert waypoints.length == 6.0 and waypoints.length_m == 3.0
     assert waypoints.points.tolist() == [[10.25, -1.75], [11.75, 0.25], [12.25, 0.25]]
+    in_cells = Waypoints(OccupancyGrid(np.zeros((5, 5))), waypoints.cells)
+    assert in_cells.length == 6.0 and in_cells.points.tolist() == waypoints.cells.tolist()
 
 
 def test_lines_keep_to_the_headings_of_the_steps():

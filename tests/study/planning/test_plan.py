@@ -200,7 +200,7 @@ def test_the_plan_says_where_maps_come_from(arena):
         ("{ first = 6 }", "", "", 6, "queries go up to 6"),
         ("{ first = 3, last = 1 }", "", "", 6, "before first"),
         ("", "start = [0, 0]", "", 7, "start comes from the scen file"),
-        ("", "radius = 0.6", "", 7, "query 0: with obstacles grown"),
+        ("", "radius = 0.6\nresolution = 1", "", 7, "query 0: with obstacles grown"),
         ("", 'representation = "integer"', "", 4, "problem 'arena/1': "),
         ("", "", 'representation = "integer"', 8, "problem 'arena/1': "),
     ],
