@@ -40,8 +40,8 @@ def add_resume(plan, group) -> None:
         "--resume",
         type=folder,
         metavar="DIR",
-        help="begin with the last populations that a plan left in this folder, on its map and with its query, representation and "
-        "objectives: a new start from there, with random numbers of its own",
+        help="begin with the last populations that a plan left in this folder, on its map and with its query, representation "
+        "and objectives: a new start from there, with random numbers of its own",
     )
     options = {action.dest: (action.option_strings or [action.metavar])[-1] for action in reversed(plan._actions)}
     plan.set_defaults(options={dest: (name, plan.get_default(dest)) for dest, name in options.items() if dest not in _HEEDED})
@@ -53,8 +53,8 @@ def read_stored(arguments) -> Stored:
     Raises
     ------
     GridPathError
-        If the folder does not hold the plan of a search, its problem cannot be made again, or an option is given that the stored
-        plan decides.
+        If the folder does not hold the plan of a search, its problem cannot be made again, or an option is given that the
+        stored plan decides.
     """
     import numpy as np
 
@@ -82,7 +82,8 @@ def read_stored(arguments) -> Stored:
     except Exception:
         # What is no archive, or none of these arrays, fails in almost any way.
         raise GridPathError(f"{visible(file)}: the populations cannot be read, expected the file as a plan wrote it") from None
-    for X in found:
+    # An archive of none has none that fits.
+    for X in found or [np.empty(0)]:
         fits = X.ndim == 2 and len(X) and X.shape[1] == problem.n_var and X.dtype.kind in "biuf"
         if not fits or not ((problem.xl <= X) & (problem.xu >= X)).all():
             raise GridPathError(

@@ -119,7 +119,7 @@ def test_figures_of_an_earlier_set_do_not_stay(tmp_path, free_map):
     assert run(*query, "--objectives", "length,vulnerability,turn").returncode == 0
     assert (tmp_path / "out" / "front_plane.png").exists()
     assert run(*query, "--objectives", "length").returncode == 0
-    assert {file.stem for file in (tmp_path / "out").iterdir()} == {"paths", "map", "convergence"}
+    assert {file.stem for file in (tmp_path / "out").iterdir()} == {"paths", "population", "map", "convergence"}
 
 
 def test_plan_finds_paths_that_turn_back(tmp_path):

@@ -123,6 +123,9 @@ def damaged(first, tmp_path, name):
     if name == "objects":
         np.savez(file, run_0=np.array([[{}]], dtype=object))
         return folder, "the populations cannot be read"
+    if name == "no runs":
+        np.savez(file)
+        return folder, "a population is not of the problem in paths.json"
     if name == "another problem":
         np.savez(file, run_0=np.zeros((4, 3), dtype=int))
         return folder, "a population is not of the problem in paths.json"
@@ -141,7 +144,7 @@ def damaged(first, tmp_path, name):
     return folder, "the file cannot be read"
 
 
-NAMES = ["missing", "no archive", "objects", "another problem", "beyond bounds", "own objective", "no paths"]
+NAMES = ["missing", "no runs", "no archive", "objects", "another problem", "beyond bounds", "own objective", "no paths"]
 
 
 @pytest.mark.parametrize("name", NAMES)
