@@ -216,7 +216,7 @@ class Waypoints:
             If the map has no metres, the frame is no text, or the file cannot be written.
         """
         self.grid.check_resolution("nav_msgs/Path")
-        text = waypoint_files.nav_path_text(self.points, self.yaw, checks.text("frame_id", frame_id))
+        text = waypoint_files.nav_path_text(self.points, self.yaw, str(checks.text("frame_id", frame_id)))
         return write_whole(path, text.encode())
 
     def to_f1tenth(self, path: str | os.PathLike[str], speed: float = 1.0) -> Path:
