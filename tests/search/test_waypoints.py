@@ -230,7 +230,7 @@ def test_a_racing_line(tmp_path):
 
 @pytest.mark.parametrize("tolerance", [-0.1, math.nan, "0.1", True])
 def test_tolerances_that_are_none(tolerance):
-    with pytest.raises(GridPathError, match=r"tolerance is .*expected a number of metres, zero or more"):
+    with pytest.raises(GridPathError, match=r"tolerance is .*expected a number of cells, zero or more"):
         Smoother(OccupancyGrid(np.zeros((3, 3))), (0, 0)).waypoints(np.array([(0, 0), (1, 0)]), tolerance)
 
 
