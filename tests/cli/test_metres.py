@@ -129,7 +129,7 @@ def test_a_robot_that_is_there_gets_files_of_one_pose(hall, options, capsys):
         assert [row["length_m"] for row in csv.DictReader(file)] == ["0.0"]
     x, y = path["points"][0]
     assert (out / "waypoints-knee.csv").read_text().splitlines() == ["x,y,yaw", f"{x!r},{y!r},0.0"]
-    pose, = yaml.safe_load((out / "waypoints-knee.yaml").read_text())["poses"]
+    (pose,) = yaml.safe_load((out / "waypoints-knee.yaml").read_text())["poses"]
     assert (pose["pose"]["position"]["x"], pose["pose"]["orientation"]["w"]) == (x, 1.0)
     assert np.loadtxt(out / "raceline-knee.csv", delimiter=";").tolist() == [0.0, x, y, 0.0, 0.0, 1.0, 0.0]
     again = load_json(out / "paths.json")
