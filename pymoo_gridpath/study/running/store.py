@@ -172,7 +172,7 @@ class Store:
         if study is not None:
             checks.text("study", study)
         for planned in plan.problems:
-            for digest, cells in ((_digest(planned), planned.grid), (_original(planned), planned.original)):
+            for digest, cells in ((_planned_on(planned), planned.grid), (_before(planned), planned.original)):
                 file = self._grid_file(digest)
                 if cells is not None and file is not None and not file.exists():
                     self._write(file, cells)
@@ -189,11 +189,11 @@ class Store:
 
     def read_grid(self, planned: PlannedProblem) -> bytes | None:
         """Return the packed cells of a problem's map, or None of random grids, or where they are not there."""
-        return self._cells(_digest(checks.instance("planned", planned, PlannedProblem)))
+        return self._cells(_planned_on(checks.instance("planned", planned, PlannedProblem)))
 
     def read_original(self, planned: PlannedProblem) -> bytes | None:
         """Return the packed cells of a problem's map before obstacles grew, or None if none did, or they are not there."""
-        return self._cells(_original(checks.instance("planned", planned, PlannedProblem)))
+        return self._cells(_before(checks.instance("planned", planned, PlannedProblem)))
 
     def _cells(self, digest: str) -> bytes | None:
         file = self._grid_file(digest)
@@ -316,11 +316,11 @@ class Store:
                     os.unlink(entry.path)
 
 
-def _digest(planned: PlannedProblem) -> str:
+def _planned_on(planned: PlannedProblem) -> str:
     return planned.spec["grid"].get("digest", "")
 
 
-def _original(planned: PlannedProblem) -> str:
+def _before(planned: PlannedProblem) -> str:
     return (planned.place or {}).get("original", "")
 
 
