@@ -117,12 +117,6 @@ class Objective(ABC):
     local: bool = False
     in_cells: bool = False
 
-    def in_words(self, grid: OccupancyGrid) -> tuple[str, float]:
-        """Return what an axis of a figure says of it on a map, and by what its values are multiplied there."""
-        if self.in_cells and grid.resolution is not None:
-            return self.label.replace("[cells]", "[m]"), grid.resolution
-        return self.label, 1.0
-
     def on(self, grid: OccupancyGrid) -> Objective:
         """Return the objective with everything written out that a map decides where it is not given; itself if that is nothing.
 
@@ -430,6 +424,13 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
     if not names or len(set(names)) < len(names):
         raise GridPathError(f"objectives are {shown(names)}, expected one or more, each once")
     return tuple(made)
+
+
+def axis_of(objective: Objective, grid: OccupancyGrid) -> tuple[str, float]:
+    """Return what an axis of a figure says of an objective on a map, and by what its values are multiplied there."""
+    if objective.in_cells and grid.resolution is not None:
+        return objective.label.replace("[cells]", "[m]"), grid.resolution
+    return objective.label, 1.0
 
 
 def field_of(objective: Objective, grid: OccupancyGrid, box: Box | None = None) -> np.ndarray | None:

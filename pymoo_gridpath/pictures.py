@@ -68,7 +68,7 @@ class Scene(NamedTuple):
             [cells - corner for cells in self.others],
             [line._replace(cells=line.cells - corner) for line in self.lines],
             *(None if end is None else (end[0] - x0, end[1] - y0) for end in (self.start, self.goal)),
-            None if self.grown is None else self.grown[part],
+            grown=None if self.grown is None else self.grown[part],
         )
 
 

@@ -128,6 +128,7 @@ def _problems(w: World) -> dict[str, Call]:
     shortening = problems.ShorteningProblem(w.grid, road, n_points=2)
     moving = problems.MovingObstaclesProblem(w.grid, [[(-1, 0), (-2, 0)]], **w.query)
     timed = w.timed
+    metres = {"grid": w.grid, **{end: tuple(w.grid.to_metres(cell)) for end, cell in w.query.items()}}
     own = {"grid": w.grid, **w.query, "representation": "integer", "objectives": ("length", "vulnerability"), "axis": "x"}
     return {
         "GridPathProblem": (
@@ -136,9 +137,14 @@ def _problems(w: World) -> dict[str, Call]:
         ),
         "GridPathProblem.decode": (problem.decode, {"X": w.rows(problem)}),
         "GridPathProblem.evaluate": (partial(problem.evaluate, return_values_of=["F", "turn"]), {"X": w.rows(problem)}),
-        "GridPathProblem.from_metres": (
-            GridPathProblem.from_metres,
-            {"grid": w.grid, **{end: tuple(w.grid.to_metres(w.query[end])) for end in w.query}, "goal_tolerance": 0.5},
+        "GridPathProblem.from_metres": (GridPathProblem.from_metres, {**metres, "goal_tolerance": 0.5}),
+        "MovingObstaclesProblem.from_metres": (
+            problems.MovingObstaclesProblem.from_metres,
+            {**metres, "movers": [[(-1, 0), (-2, 0)]]},
+        ),
+        "TimedPathProblem.from_metres": (
+            problems.TimedPathProblem.from_metres,
+            {**metres, "movers": [[(-1, 0), (-2, 0)]], "horizon": 12},
         ),
         "GridPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
         "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),

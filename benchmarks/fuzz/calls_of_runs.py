@@ -367,6 +367,7 @@ def _studies(w: World) -> dict[str, Call]:
         "Store.path": (w.store.path, {"key": key}),
         "Store.read": (w.store.read, {"key": key, "genes": True}),
         "Store.read_grid": (w.store.read_grid, {"planned": plan.problems[0]}),
+        "Store.read_original": (w.store.read_original, {"planned": plan.problems[0]}),
         "Store.read_plan": (w.store.read_plan, {}),
         "Store.write": (w.store.write, {"key": key, "data": w.store.path(key).read_bytes()}),
         "Store.write_plan": (w.store.write_plan, {"plan": plan, "study": "a"}),

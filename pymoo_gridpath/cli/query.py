@@ -60,11 +60,11 @@ def ends(grid: OccupancyGrid, known: Query, arguments) -> tuple[Cell, Cell]:
         start = place_in_metres(grid, "start", arguments.start_m)
     if arguments.goal_m is None:
         start, goal = ends_of(grid, known, start, goal, option="--")
-        target = goal if arguments.goal_tolerance == 0 else grid.to_metres(goal)
+        if arguments.goal_tolerance == 0:
+            return check_grown(grid, start, goal, standing=True)
+        target = grid.to_metres(goal).tolist()
     else:
         # Whichever goal the map names, this one is meant.
         start, target = ends_of(grid, known, start, (0, 0), option="--")[0], arguments.goal_m
-    if target is goal:
-        return check_grown(grid, start, goal, standing=True)
     start, _ = check_grown(grid, start, start, standing=True)
     return start, goal_near(grid, start, arguments.start_m, target, arguments.goal_tolerance)

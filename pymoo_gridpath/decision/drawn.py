@@ -62,9 +62,9 @@ def record_scene(record) -> Scene:
     if record.grid is None:
         # Of a record made by hand nothing else is known.
         low, high = record.cells.min(axis=0), record.cells.max(axis=0) + 1
-        return Scene(np.zeros((high[1], high[0]), dtype=bool), None, [], [line], *ends).cropped(*low, *high)
+        return Scene(np.zeros((high[1], high[0]), dtype=bool), None, [], [line], ends[0], ends[1]).cropped(*low, *high)
     grid = record.grid
-    return Scene(grid.occupied, grid.unknown, [], [line], *ends, grid.grown_cells).cropped(*grid.box_of(ends[0]))
+    return Scene(grid.occupied, grid.unknown, [], [line], ends[0], ends[1], grid.grown_cells).cropped(*grid.box_of(ends[0]))
 
 
 def record_html(record) -> str:

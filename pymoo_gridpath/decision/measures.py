@@ -80,7 +80,7 @@ class PathMeasures:
         """
         grid, box = self.problem.grid, self.problem.representation.box
         # What keeps the robot from a cell is no further away than it is wide.
-        reach = math.ceil(grid.radius_in_cells(grid.robot_radius)) + 2
+        reach = math.ceil(grid.growth) + 2
         away = least_distances(grid.original.occupied, cells, box.grown(reach, grid.shape))
         metres = away * grid.check_resolution("a clearance in metres")
         return np.round(metres - grid.robot_radius, _DECIMALS) + 0.0

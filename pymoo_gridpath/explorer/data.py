@@ -17,6 +17,7 @@ from pymoo_gridpath.decision.drawn import drawn_box, drawn_field
 from pymoo_gridpath.decision.export import shown_measures
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.grid import Box, OccupancyGrid
+from pymoo_gridpath.objectives import axis_of
 
 # Measures are for people to compare: so many digits tell apart all that figures could.
 _DIGITS = 7
@@ -178,7 +179,7 @@ def _columns(trade_off) -> list[dict]:
     if trade_off.feasible:
         del measures["interfering_cells"]  # they cross none
     for objective in trade_off.problem.objectives:
-        label, scale = objective.in_words(trade_off.problem.grid)
+        label, scale = axis_of(objective, trade_off.problem.grid)
         same = f"{objective.name}_m" if objective.name == "length" and scale != 1.0 else objective.name
         words = _LABELS.get(same) or _split(visible(label))
         columns.append(_column(objective.name, words, True, trade_off.measures[objective.name] * scale))

@@ -56,6 +56,11 @@ class GrownCells(Cells):
         return 0.0 if self._growth is None else self._growth.robot_radius
 
     @property
+    def growth(self) -> float:
+        """The `robot_radius` in cells, whatever the unit of the map; at most the width and height together."""
+        return min(self.robot_radius / self._cell, float(sum(self.shape)))
+
+    @property
     def footprint(self) -> Footprint | None:
         """Corners (x, y) of the robot in metres, if obstacles grew by its footprint, and by nothing else."""
         return None if self._growth is None else self._growth.footprint

@@ -89,7 +89,8 @@ def check_grown(grown: OccupancyGrid, start: Sequence[int], goal: Sequence[int],
 
     def check(grid: OccupancyGrid) -> tuple[Cell, Cell]:
         if standing and tuple(start) == tuple(goal):
-            return (grid.check_cell(start, "start"),) * 2
+            cell = grid.check_cell(start, "start")
+            return cell, cell
         return grid.check_query(start, goal)
 
     check(grown.original)

@@ -20,6 +20,7 @@ from matplotlib.ticker import MaxNLocator
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, counted, visible
 from pymoo_gridpath.files import write_whole
+from pymoo_gridpath.objectives import axis_of
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.fronts import staircase
 from pymoo_gridpath.plotting.maps import plot_map
@@ -118,7 +119,7 @@ class _Film:
             ratios = [1.0, 0.8] if wide else [1.0, 1.0]
             options: dict[str, Any] = {"height_ratios": ratios} if wide else {"width_ratios": ratios}
             self.axes = self.figure.subplots(2 if wide else 1, 1 if wide else 2, **options)
-        words = [objective.in_words(grid) for objective in self.problem.objectives]
+        words = [axis_of(objective, grid) for objective in self.problem.objectives]
         self.units_of = [label for label, _ in words], np.array([scale for _, scale in words])
         self.limits = self._limits()
         self.draw(0)

@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError, visible
+from pymoo_gridpath.objectives import axis_of
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.labels import place_labels
 
@@ -58,7 +59,7 @@ def plot_front(
     columns = _columns(check_set(trade_off), objectives)
     groups = style.by_path(trade_off, which)
     other = as_reference(trade_off, reference)
-    other = None if other is None else _in_words(trade_off, other)
+    other = None if other is None else _on_axes(trade_off, other)
     reference_label = visible(checks.text("reference_label", reference_label))
     style.check_axes(ax)
     solid = len(columns) == 3
@@ -112,7 +113,7 @@ def staircase(F: np.ndarray) -> np.ndarray:
 
 
 def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: str) -> None:
-    F = _in_words(trade_off, trade_off.F)[:, columns]
+    F = _on_axes(trade_off, trade_off.F)[:, columns]
     whole = len(columns) == trade_off.F.shape[1]
     lines = [F[[k]] for k in range(len(F))]
     if other is not None:
@@ -130,7 +131,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         lines.append(stairs)
     rest = [k for k in range(trade_off.F.shape[1]) if k not in columns]
     if len(rest) == 1:
-        values = _in_words(trade_off, trade_off.F)[:, rest[0]]
+        values = _on_axes(trade_off, trade_off.F)[:, rest[0]]
         low, high = style.span(values)
         look = {"c": values, "cmap": "cividis", "vmin": low, "vmax": high}
         dots = ax.scatter(*F.T, s=18, **look, zorder=3, label="trade-off paths")
@@ -159,7 +160,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
 
 
 def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> None:
-    F = _in_words(trade_off, trade_off.F)[:, columns]
+    F = _on_axes(trade_off, trade_off.F)[:, columns]
     if other is not None:
         ax.scatter(
             *other[:, columns].T, s=10, facecolors="none", edgecolors=style.REFERENCE, linewidths=0.5, label=reference_label
@@ -195,10 +196,10 @@ def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> 
 
 def _label(trade_off, column: int) -> str:
     problem = trade_off.problem
-    return problem.objectives[column].in_words(problem.grid)[0]
+    return axis_of(problem.objectives[column], problem.grid)[0]
 
 
-def _in_words(trade_off, F: np.ndarray) -> np.ndarray:
+def _on_axes(trade_off, F: np.ndarray) -> np.ndarray:
     """Return points in the units that the axes say."""
     problem = trade_off.problem
-    return F * [objective.in_words(problem.grid)[1] for objective in problem.objectives]
+    return F * [axis_of(objective, problem.grid)[1] for objective in problem.objectives]

@@ -40,7 +40,7 @@ class Smoother:
     @functools.cached_property
     def _nearest(self) -> Nearest:
         # The nearest grown obstacles are in the part that can be reached; what they grew from is within the radius of that.
-        further = math.ceil(self.grid.robot_radius / metres_of(self.grid)) + 2
+        further = math.ceil(self.grid.growth) + 2
         box = self._moves.box.grown(further, self.grid.shape)
         return Nearest(self.grid.original.occupied[box.slices], (box.x0, box.y0))
 

@@ -133,7 +133,7 @@ class Waypoints:
 
         It is that of the line, not of its points alone: the least is exact, the mean is that of 8 points a cell.
         """
-        radius = self.grid.robot_radius / metres_of(self.grid)
+        radius = self.grid.growth
         return Clearance(self._nearest.least(self.cells) - radius, self._nearest.mean(self.cells) - radius)
 
     @property

@@ -5,6 +5,7 @@ import json
 
 import numpy as np
 import pytest
+import yaml
 
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.decision import load_json
@@ -118,6 +119,7 @@ def test_a_footprint_is_planned_for_and_remembered(hall, text):
 def test_a_robot_that_is_there_gets_files_of_one_pose(hall, options, capsys):
     options = [metres(hall, (3, 3)) if option == "same" else option for option in options]
     out, page = hall.parent / "out", hall.parent / "page.html"
+    options += ["--waypoints", "csv,yaml,f1tenth", "--spacing", "0.1"]
     assert main(["plan", str(hall), *options, "-o", str(out), "--html", str(page)]) == 0
     printed = capsys.readouterr()
     assert "1 trade-off path from (3, 3) to (3, 3)" in printed.out
@@ -125,6 +127,11 @@ def test_a_robot_that_is_there_gets_files_of_one_pose(hall, options, capsys):
     assert path["cells"] == [[3, 3]] and path["length"] == path["turn"] == 0 and path["clearance_m"] > 0
     with open(out / "paths.csv", newline="") as file:
         assert [row["length_m"] for row in csv.DictReader(file)] == ["0.0"]
+    x, y = path["points"][0]
+    assert (out / "waypoints-knee.csv").read_text().splitlines() == ["x,y,yaw", f"{x!r},{y!r},0.0"]
+    (pose,) = yaml.safe_load((out / "waypoints-knee.yaml").read_text())["poses"]
+    assert (pose["pose"]["position"]["x"], pose["pose"]["orientation"]["w"]) == (x, 1.0)
+    assert np.loadtxt(out / "raceline-knee.csv", delimiter=";").tolist() == [0.0, x, y, 0.0, 0.0, 1.0, 0.0]
     again = load_json(out / "paths.json")
     assert len(again) == 1 and again.knee.cells.tolist() == [[3, 3]] and again.to_json(out / "b.json").read_bytes()
     assert (out / "map.png").exists() and page.exists()
