@@ -13,12 +13,13 @@ import argparse
 import csv
 import sys
 import time
+from collections import defaultdict
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet, load_map
 from pymoo_gridpath.algorithms import Waypoints
@@ -26,6 +27,7 @@ from pymoo_gridpath.operators import ScalarizedSampling
 
 QUERIES = Path(__file__).with_name("waypoints_queries.csv")
 N_WEIGHTS, POINTS_A_CELL = 12, 16
+NAMES = ("shortest", "knee", "safest")
 
 
 class Obstacles:
@@ -33,7 +35,7 @@ class Obstacles:
 
     def __init__(self, occupied: np.ndarray):
         self.centres = np.argwhere(occupied)[:, ::-1].astype(float)
-        self.tree = cKDTree(self.centres)
+        self.tree = KDTree(self.centres)
 
     def distances(self, points: np.ndarray) -> np.ndarray:
         nearest, _ = self.tree.query(points)
@@ -91,7 +93,8 @@ def main(argv: list[str] | None = None) -> int:
     arguments = parser.parse_args(argv)
     maps = {path.stem: load_map(path) for path in arguments.maps}
     grids, trees = {}, {name: Obstacles(grid.occupied) for name, grid in maps.items()}
-    rows, worst, longer, seconds, n = [], np.inf, -np.inf, 0.0, 0
+    rows: dict[tuple[str, str, bool], list[tuple[float, ...]]] = defaultdict(list)
+    worst, longer, seconds, n = np.inf, -np.inf, 0.0, 0
     for query in list(queries())[:: arguments.every]:
         if query["map"] not in maps:
             continue
@@ -100,7 +103,7 @@ def main(argv: list[str] | None = None) -> int:
         start, goal = ((int(query[f"{end}_x"]), int(query[f"{end}_y"])) for end in ("start", "goal"))
         found = paths_of(grid, start, goal)
         n += 1
-        for name in ("shortest", "knee", "safest"):
+        for name in NAMES:
             record = found[name]
             before = time.process_time()
             made = record.waypoints()
@@ -108,15 +111,17 @@ def main(argv: list[str] | None = None) -> int:
             worst = min(worst, to_spare(record.cells, made.cells, trees[key[0]], 0.5))
             path = Waypoints(grid, record.cells)
             longer = max(longer, made.length - path.length)
-            measures = [(one.length_m, one.turn, len(one), *one.clearance_m) for one in (path, made)]
-            rows.append((key[0], name, *measures[0], *measures[1]))
-    print(f"{n} queries, {len(rows)} paths, {1000 * seconds / len(rows):.1f} ms of processor time a path")
+            for one in (path, made):
+                lengths = np.array([one.length, *one.clearance]) * grid.check_resolution("a map of ROS")
+                rows[key[0], name, one is made].append((lengths[0], one.turn, len(one), *lengths[1:]))
+    if not n:
+        raise SystemExit("no query is on these maps, expected depot.yaml and tb3_sandbox.yaml")
+    print(f"{n} queries, {len(NAMES) * n} paths, {1000 * seconds / (len(NAMES) * n):.1f} ms of processor time a path")
     print("map          path      length [m]     turn [deg]     points      least clearance [m]  mean clearance [m]")
     for name in maps:
-        for which in ("shortest", "knee", "safest"):
-            part = np.array([row[2:] for row in rows if row[:2] == (name, which)], dtype=float)
-            if len(part):
-                a, b = np.split(part.mean(axis=0), 2)
+        for which in NAMES:
+            if (name, which, True) in rows:
+                a, b = (np.mean(rows[name, which, smooth], axis=0) for smooth in (False, True))
                 print(
                     f"{name:<12} {which:<9} {a[0]:6.2f} {b[0]:6.2f}  {a[1]:6.0f} {b[1]:6.0f}  {a[2]:5.0f} {b[2]:5.1f}  "
                     f"{a[3]:8.3f} {b[3]:8.3f}    {a[4]:8.3f} {b[4]:8.3f}"
@@ -124,7 +129,7 @@ def main(argv: list[str] | None = None) -> int:
     print(f"to spare of the promise, of all points looked at: {worst:.4f} cells at the least, expected 0 or more")
     print(f"longer than the path: {longer:.2g} cells at the most, expected 0 or less")
     turn = corridor()
-    return 0 if worst > -1e-9 and longer < 1e-9 and turn <= 45 and n else 1
+    return 0 if worst > -1e-9 and longer < 1e-9 and turn <= 45 else 1
 
 
 if __name__ == "__main__":
