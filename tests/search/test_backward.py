@@ -37,7 +37,7 @@ def cases(n):
 def test_lists_find_what_a_heap_finds(monkeypatch):
     for moves, field, given, _ in cases(60):
         searches = []
-        for most in (shortest._MOST_LISTS, 0):
+        for most in (2**14, 0):
             monkeypatch.setattr(shortest, "_MOST_LISTS", most)
             searches.append(Backward(moves, STEP, field, 0, **given))
             searches[-1].run()
@@ -46,7 +46,7 @@ def test_lists_find_what_a_heap_finds(monkeypatch):
         np.testing.assert_array_equal(by_list.cost, by_heap.cost)
 
 
-@pytest.mark.parametrize("most", [shortest._MOST_LISTS, 0])
+@pytest.mark.parametrize("most", [2**14, 0])
 def test_a_search_that_stopped_goes_on(most, monkeypatch):
     monkeypatch.setattr(shortest, "_MOST_LISTS", most)
     for moves, field, given, draw in cases(60):
