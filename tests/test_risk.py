@@ -266,7 +266,9 @@ def test_metres_give_a_choice_where_the_paper_sees_one_path():
     occupied = np.zeros((40, 60), dtype=bool)
     occupied[:13, 20:40] = True
     grid = OccupancyGrid(occupied, 0.05)
-    sizes = [len(set_of(GridPathProblem(grid, (4, 20), (56, 20), "cells", ["length", one]))) for one in (PAPER, "vulnerability")]
+    sizes = [
+        len(set_of(GridPathProblem(grid, (4, 20), (56, 20), "cells", ["length", one]))) for one in (PAPER, "vulnerability")
+    ]
     assert sizes[0] == 1 and sizes[1] > 5
 
 
