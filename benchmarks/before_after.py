@@ -27,7 +27,6 @@ from pathlib import Path
 import numpy as np
 
 SIDES = ("before", "after")
-OBJECTIVES = ("length", "vulnerability", "turn")
 
 # Seconds of the processor that a turn takes at least.
 _TURN = 0.03
@@ -42,12 +41,16 @@ def workloads() -> Iterator[tuple[str, Callable[[], Callable[[], object]]]]:
     from pymoo_gridpath import GridPathProblem
     from pymoo_gridpath.algorithms import make_algorithm
     from pymoo_gridpath.exact import exact_front
+    from pymoo_gridpath.objectives import Vulnerability
     from pymoo_gridpath.operators import path_operators
     from pymoo_gridpath.problems import random_dense_grid
 
+    # The paper's.
+    objectives = "length", Vulnerability(0.5), "turn"
+
     def problem_of(size: int, coding: str, n_obj: int):
         grid = random_dense_grid(size, 0.1, 1)
-        return GridPathProblem(grid, (0, 0), (size - 1, size - 1), coding, objectives=OBJECTIVES[:n_obj])
+        return GridPathProblem(grid, (0, 0), (size - 1, size - 1), coding, objectives=objectives[:n_obj])
 
     def generations(coding: str):
         problem = problem_of(32, coding, 2)

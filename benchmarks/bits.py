@@ -26,6 +26,7 @@ from pymoo.optimize import minimize
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.maps import load_map
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.operators import default_operators, path_operators
 
 N_RUNS = 100
@@ -98,7 +99,9 @@ def digest(configuration: tuple) -> str:
     grid = grid_of(corner_cutting, number)
     goal = (grid.width - 1, grid.height - 1)
     limit = 40.0 if obstacles == "limit" else None
-    problem = GridPathProblem(grid, (0, 0), goal, representation, objectives, obstacles, potential_limit=limit)
+    # The paper's, also on a map in metres.
+    named = [Vulnerability(variance=0.5) if name == "vulnerability" else name for name in objectives]
+    problem = GridPathProblem(grid, (0, 0), goal, representation, named, obstacles, potential_limit=limit)
     if algorithm == "exact":
         made = make_algorithm("exact", problem)
     else:

@@ -25,9 +25,12 @@ from pymoo_gridpath.compiled import COMPILED
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.exact import ExactResult, exact_front
 from pymoo_gridpath.maps import load_map, read_scen
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.representations import CellSequence
 
-TWO, THREE = ("length", "vulnerability"), ("length", "vulnerability", "turn")
+# The paper's.
+TWO = "length", Vulnerability(variance=0.5)
+THREE = (*TWO, "turn")
 
 
 class Case(NamedTuple):
@@ -47,6 +50,7 @@ def random_problems(size: int, density: float, n: int, **options) -> list[GridPa
         seed += 1
         try:
             grid = OccupancyGrid(occupied, name=f"random {size}")
+            options.setdefault("objectives", TWO)
             problems.append(GridPathProblem(grid, (0, 0), (size - 1, size - 1), **options))
         except GridPathError:  # no way through
             continue
@@ -58,7 +62,7 @@ def map_problems(folder: Path, name: str, longest: bool, every: int = 1) -> list
     grid = load_map(folder / f"{name}.map")
     queries = [query for query in read_scen(folder / f"{name}.map.scen", grid) if query.start != query.goal]
     queries = [max(queries, key=lambda query: query.optimal_length)] if longest else queries[::every]
-    return [GridPathProblem(grid, query.start, query.goal, representation="cells") for query in queries]
+    return [GridPathProblem(grid, query.start, query.goal, "cells", TWO) for query in queries]
 
 
 def cases(arguments) -> Iterator[Case]:
@@ -69,9 +73,7 @@ def cases(arguments) -> Iterator[Case]:
     for corner in (False, True):
         problems = random_problems(128, 0.2, n, representation="cells")
         if corner:
-            problems = [
-                GridPathProblem(p.grid.replace(corner_cutting=True), p.start, p.goal, representation="cells") for p in problems
-            ]
+            problems = [GridPathProblem(p.grid.replace(corner_cutting=True), p.start, p.goal, "cells", TWO) for p in problems]
         yield Case(f"random 128, 20 %, corners {'cut' if corner else 'kept'}", problems, 0.1)
     problems = random_problems(64, 0.2, n, representation="cells", objectives=THREE)
     yield Case("random 64, 20 %, 3 objectives", problems, 0.5)

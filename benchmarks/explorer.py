@@ -23,6 +23,7 @@ from scipy import ndimage
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.explorer import save_page
 from pymoo_gridpath.neighbourhood import HEADINGS
+from pymoo_gridpath.objectives import Vulnerability
 
 SIDE, N_PATHS, N_CELLS = 512, 1500, 700
 
@@ -97,7 +98,7 @@ def large_problem(random) -> GridPathProblem:
     grid = OccupancyGrid(occupied, resolution=0.05, name="large")
     ys, xs = np.nonzero(~occupied)
     k = int(np.argmax(xs + ys))
-    return GridPathProblem(grid, (0, 0), (int(xs[k]), int(ys[k])), "cells", ("length", "vulnerability", "turn"))
+    return GridPathProblem(grid, (0, 0), (int(xs[k]), int(ys[k])), "cells", ("length", Vulnerability(variance=0.5), "turn"))
 
 
 def quartiles(times: list[float]) -> str:

@@ -23,10 +23,12 @@ from pymoo.optimize import minimize
 from scipy.stats import wilcoxon
 
 from pymoo_gridpath.algorithms import SmoothMOEAD, make_algorithm, reference_directions
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.operators import default_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 
-OBJECTIVES = ("length", "vulnerability", "turn")
+# The paper's.
+OBJECTIVES = ("length", Vulnerability(variance=0.5), "turn")
 
 
 def stock(name: str, problem, pop_size: int) -> Algorithm:

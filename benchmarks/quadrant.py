@@ -28,6 +28,7 @@ from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import AStar, ExactFront, QuadrantSelection
 from pymoo_gridpath.grid import Cell
 from pymoo_gridpath.maps import load_map, shipped_maps
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.paths import CellPaths
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.testing.branches import enumerate_branches
@@ -112,7 +113,7 @@ def try_claims(name: str, grid: OccupancyGrid, n: int, rng: np.random.Generator)
         shortest = grid.shortest_length(start, goal)
         raw.append(length([tuple(cell) for cell in found.raw[0].tolist()]) / shortest)
         smooth.append(length(path) / shortest)
-        problem = GridPathProblem(grid, start, goal, "cells")
+        problem = GridPathProblem(grid, start, goal, "cells", ("length", Vulnerability(variance=0.5)))
         F, front = (np.asarray(minimize(problem, planner).F) for planner in (QuadrantSelection(), ExactFront()))
         dominated += bool(((front <= F + 1e-9).all(axis=1) & (front < F - 1e-9).any(axis=1)).any())
         cells.append([found.free_cells])

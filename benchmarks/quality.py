@@ -32,10 +32,14 @@ from pymoo.optimize import minimize
 from pymoo_gridpath import GridPathProblem
 from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.maps import load_map, read_scen
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.operators import paper_operators, path_operators
 from pymoo_gridpath.problems import random_dense_grid
 
 ALGORITHMS = ("NSGA2", "SPEA2", "MOEAD")
+
+# The paper's.
+OBJECTIVES = ("length", Vulnerability(variance=0.5))
 
 
 class Case(NamedTuple):
@@ -53,10 +57,10 @@ def make_problem(place: str, representation: str, seed: int, maps: Path | None) 
     if place.startswith("random-"):
         _, size, p0 = place.split("-")
         n = int(size)
-        return GridPathProblem(random_dense_grid(n, float(p0), seed), (0, 0), (n - 1, n - 1), representation=representation)
+        return GridPathProblem(random_dense_grid(n, float(p0), seed), (0, 0), (n - 1, n - 1), representation, OBJECTIVES)
     assert maps is not None
     grid, query = longest_query(place, maps)
-    return GridPathProblem(grid, query.start, query.goal, representation=representation)
+    return GridPathProblem(grid, query.start, query.goal, representation, OBJECTIVES)
 
 
 @cache

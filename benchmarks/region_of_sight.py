@@ -23,6 +23,7 @@ from pymoo_gridpath.algorithms import RegionOfSight
 from pymoo_gridpath.compiled import COMPILED
 from pymoo_gridpath.maps import load_map, load_shipped, shipped_maps
 from pymoo_gridpath.neighbourhood import DIAGONAL as IS_DIAGONAL
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.problems import concave_environment, convex_environment, far_corners, maze_environment
 from pymoo_gridpath.search.counted import DIAGONAL, STRAIGHT
 from pymoo_gridpath.search.moves import Moves
@@ -31,6 +32,9 @@ from pymoo_gridpath.testing.reference import is_legal, length
 
 Cell = tuple[int, int]
 Query = tuple[OccupancyGrid, Cell, Cell]
+
+# Of Ahmed and Deb (2013).
+OBJECTIVES = ("length", Vulnerability(variance=0.5))
 
 # Length, distance to obstacles, curvature in 1 / m and passes, tables I to III.
 _PRINTED: dict[Callable[[int], OccupancyGrid], str] = {
@@ -42,7 +46,7 @@ _PRINTED: dict[Callable[[int], OccupancyGrid], str] = {
 
 def plan(query: Query, **arguments):
     """Return what is found, and the problem."""
-    problem = GridPathProblem(*query, representation="cells")
+    problem = GridPathProblem(*query, "cells", OBJECTIVES)
     planner = RegionOfSight(**arguments)
     return planner.plan(problem), planner.found, problem
 
@@ -120,7 +124,7 @@ def promises(grid: OccupancyGrid, n: int, rng: np.random.Generator) -> None:
 def speed(grid: OccupancyGrid, rng: np.random.Generator) -> None:
     """Print processor times beside those of Dijkstra's search."""
     moves = Moves(grid)
-    problems = [GridPathProblem(*query, representation="cells") for query in queries_of(grid, 50, rng)]
+    problems = [GridPathProblem(*query, "cells", OBJECTIVES) for query in queries_of(grid, 50, rng)]
     lengths = np.tile(np.where(IS_DIAGONAL, DIAGONAL, STRAIGHT), (9, 1)).astype(np.int64)
     step, field = np.stack([lengths, 0 * lengths]), np.zeros((2, moves.n_cells), dtype=np.int64)
     searches: dict[str, Callable[[GridPathProblem], object]] = {

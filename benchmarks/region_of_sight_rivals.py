@@ -35,6 +35,7 @@ from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import AntColony, BeeColony, RegionOfSight, Waypoints, make_algorithm
 from pymoo_gridpath.exact import Budget, exact_front
 from pymoo_gridpath.fields import clearance
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.problems import (
     ShorteningProblem,
     concave_environment,
@@ -243,7 +244,7 @@ class Fronts(NamedTuple):
 def fronts(kind: str, seed: int) -> Fronts | None:
     """Return that for a map, or None if its exact front takes too long."""
     grid = KINDS[kind](seed)
-    problem = GridPathProblem(grid, *far_corners(grid), representation="cells")
+    problem = GridPathProblem(grid, *far_corners(grid), "cells", ("length", Vulnerability(variance=0.5)))
     ours = problem.evaluate(np.asarray(RegionOfSight().plan(problem).paths))[0]
     begin = time.process_time()
     exact = exact_front(problem, Budget(max_seconds=SECONDS))

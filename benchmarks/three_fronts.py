@@ -20,6 +20,7 @@ from quality import ratio
 
 from pymoo_gridpath import GridPathProblem
 from pymoo_gridpath.algorithms import ahmed_deb_2013, make_algorithm
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.operators import path_operators
 from pymoo_gridpath.plotting import plot_map
 from pymoo_gridpath.problems import random_dense_grid
@@ -42,7 +43,7 @@ def main() -> None:
     parser.add_argument("--n-gen", type=int, default=500, help="generations of the paper's method, with 500 individuals")
     arguments = parser.parse_args()
     grid = random_dense_grid(32, 0.16, arguments.seed)
-    problem = GridPathProblem(grid, (0, 0), (31, 31))
+    problem = GridPathProblem(grid, (0, 0), (31, 31), objectives=("length", Vulnerability(variance=0.5)))
     exact: Any = problem.pareto_front(max_seconds=600.0)
     paper_result = minimize(*ahmed_deb_2013(grid, (0, 0), (31, 31), n_gen=arguments.n_gen), seed=arguments.seed)
     aware = make_algorithm("NSGA2", problem, pop_size=100, operators=path_operators(problem, "random"))

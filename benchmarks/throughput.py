@@ -22,13 +22,15 @@ from pymoo.operators.sampling.rnd import IntegerRandomSampling
 from pymoo.optimize import minimize
 
 from pymoo_gridpath.algorithms import ahmed_deb_2013, make_algorithm
+from pymoo_gridpath.objectives import Vulnerability
 from pymoo_gridpath.operators import RandomSampling, default_operators
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 
 
 def evaluations_per_second(size: int, pop_size: int, representation: str, seconds: float) -> float:
     """Return how many paths of one population are evaluated in a second (objectives, turn and interfering cells)."""
-    problem = GridPathProblem(random_dense_grid(size, 0.2, 1), (0, 0), (size - 1, size - 1), representation)
+    grid, objectives = random_dense_grid(size, 0.2, 1), ("length", Vulnerability(variance=0.5))
+    problem = GridPathProblem(grid, (0, 0), (size - 1, size - 1), representation, objectives)
     rng = np.random.default_rng(0)
     X = problem.representation.repair(RandomSampling().do(problem, pop_size, random_state=rng).get("X"), rng)
     best, end = np.inf, time.perf_counter() + seconds

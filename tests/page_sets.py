@@ -19,11 +19,12 @@ class Hostile(Objective):
 
 
 @functools.cache
-def exact_set(n_obj: int = 2, name: str = "room", hostile: bool = False, resolution: float = 0.25) -> TradeOffSet:
+def exact_set(n_obj: int = 2, name: str = "room", hostile: bool = False, resolution: float | None = 0.25) -> TradeOffSet:
     """Return the exact front of a room with two obstacles, on a map that is turned."""
     occupied = np.zeros((12, 16), dtype=bool)
     occupied[3:9, 4:6] = occupied[4:11, 10:12] = True
-    grid = OccupancyGrid(occupied, resolution, (1.5, -2.0, 0.5), name=name)
+    origin = (0.0, 0.0) if resolution is None else (1.5, -2.0, 0.5)
+    grid = OccupancyGrid(occupied, resolution, origin, name=name)
     objectives = ["length", Vulnerability(variance=2.0), Hostile() if hostile else "turn"][:n_obj]
     problem = GridPathProblem(grid, (0, 5), (15, 6), "cells", objectives)
     return TradeOffSet.from_genes(problem, problem.pareto_set(max_seconds=60))

@@ -239,7 +239,7 @@ def test_a_grid_of_another_class_is_refused_wherever_one_is_taken(wrong):
 )
 def test_arguments_of_grids_are_refused_in_a_sentence(arguments, said):
     with pytest.raises(GridError, match=said):
-        OccupancyGrid(**{"occupied": [[0]], **arguments})
+        OccupancyGrid(**{"occupied": [[0]], "resolution": 0.5, **arguments})
 
 
 def test_numpys_scalars_are_taken():

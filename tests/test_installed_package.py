@@ -59,7 +59,7 @@ class Copier(Planner):
 class Dots(MapFormat):
     name, suffixes = "dots", (".dots",)
 
-    def read(self, path, corner_cutting=False, resolution=1.0):
+    def read(self, path, corner_cutting=False, resolution=None):
         width, height = map(int, open(path).read().split())
         return make_grid(path, np.zeros((height, width)), corner_cutting=corner_cutting, resolution=resolution)
 '''

@@ -24,8 +24,8 @@ from pymoo_gridpath.problems import random_dense_grid
 mpl.use("Agg")
 
 
-def make_problem(**options):
-    return GridPathProblem(random_dense_grid(8, 0.25, 5), (0, 0), (7, 7), **options)
+def make_problem(resolution=None, **options):
+    return GridPathProblem(random_dense_grid(8, 0.25, 5).replace(resolution=resolution), (0, 0), (7, 7), **options)
 
 
 def make_set(n=3000, **options):
@@ -114,7 +114,12 @@ def test_large_maps_are_not_ruled():
 
 @pytest.mark.parametrize(
     ("options", "word"),
-    [({"units": "feet"}, "units"), ({"potential": np.zeros((3, 3))}, "shape"), ({"start": (9, 9)}, "outside")],
+    [
+        ({"units": "feet"}, "units"),
+        ({"units": "m"}, "in cells, and an axis in metres needs"),
+        ({"potential": np.zeros((3, 3))}, "shape"),
+        ({"start": (9, 9)}, "outside"),
+    ],
 )
 def test_bad_arguments_of_a_map_are_refused(options, word):
     with pytest.raises(GridPathError, match=word):
@@ -125,7 +130,8 @@ def test_bad_arguments_of_a_map_are_refused(options, word):
 
 
 @pytest.mark.parametrize("units", ["cells", "m"])
-def test_lines_run_through_the_centres_of_cells(two, units):
+def test_lines_run_through_the_centres_of_cells(units):
+    two = make_set(resolution=None if units == "cells" else 0.5)
     lines = lines_by_label(plot_paths(two, units=units))
     drawn = 0
     for label, line in lines.items():

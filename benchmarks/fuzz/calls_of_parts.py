@@ -59,6 +59,7 @@ def _grids(w: World) -> dict[str, Call]:
         ),
         "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
         "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
+        "OccupancyGrid.check_resolution": (grid.check_resolution, {"need": "a radius in metres"}),
         "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
         "OccupancyGrid.is_free": (grid.is_free, {"cell": cell}),
         "OccupancyGrid.move_graph": (grid.move_graph, {}),
@@ -68,7 +69,14 @@ def _grids(w: World) -> dict[str, Call]:
         "OccupancyGrid.shortest_lengths": (grid.shortest_lengths, {"start": cell, "limit": 5.0}),
         "OccupancyGrid.to_cells": (grid.to_cells, {"points": np.array([[1.0, 2.0], [3.0, 4.0]])}),
         "OccupancyGrid.to_metres": (grid.to_metres, {"cells": np.array([[1, 2], [3, 4]])}),
-        "obstacle_potential": (fields.obstacle_potential, {"grid": grid, "variance": 2.0}),
+        "obstacle_potential": (
+            fields.obstacle_potential,
+            {"grid": grid, "box": grid.whole, "sigma_m": 0.4, "nearest": True, "cutoff": 0.01},
+        ),
+        "inflation_cost": (
+            fields.inflation_cost,
+            {"grid": grid, "cost_scaling_factor": 3.0, "inflation_radius": 0.5, "box": grid.whole},
+        ),
         "clearance": (fields.clearance, {"grid": grid}),
     }
 
@@ -176,9 +184,12 @@ def _problems(w: World) -> dict[str, Call]:
         "Length": (objectives.Length, {}),
         **{
             f"{type(one).__name__}.{method}": (getattr(one, method), given)
-            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0))
+            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.Inflation())
             for method, given in (
+                ("field", {"grid": w.grid}),
+                ("field_in", {"grid": w.grid, "box": w.grid.whole}),
                 ("moves", {"grid": w.grid}),
+                ("on", {"grid": w.grid}),
                 ("prepare", {"representation": w.problem.representation, "grid": w.grid}),
             )
         },
@@ -187,14 +198,12 @@ def _problems(w: World) -> dict[str, Call]:
         "Objective.moves": (objectives.Turn().moves, {"grid": w.grid}),
         "Objective.prepare": (objectives.Turn().prepare, {"representation": w.problem.representation, "grid": w.grid}),
         "register": (pymoo_gridpath.register, {"cls": objectives.Length}),
-        "Length.field": (objectives.Length().field, {"grid": w.grid}),
-        "Length.field_in": (objectives.Length().field_in, {"grid": w.grid, "box": w.grid.whole}),
         "Turn": (objectives.Turn, {}),
-        "Turn.field": (objectives.Turn().field, {"grid": w.grid}),
-        "Turn.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
-        "Vulnerability": (objectives.Vulnerability, {"variance": 2.0}),
-        "Vulnerability.field": (objectives.Vulnerability(2.0).field, {"grid": w.grid}),
-        "Vulnerability.field_in": (objectives.Vulnerability(2.0).field_in, {"grid": w.grid, "box": w.grid.whole}),
+        "Vulnerability": (objectives.Vulnerability, {"sigma_m": 2.0, "nearest": False, "cutoff": 0.1}),
+        "Vulnerability.potential": (objectives.Vulnerability(2.0).potential, {"grid": w.grid, "box": w.grid.whole}),
+        "Inflation": (objectives.Inflation, {"cost_scaling_factor": 3.0, "inflation_radius": 0.5}),
+        "Inflation.potential": (objectives.Inflation().potential, {"grid": w.grid, "box": w.grid.whole}),
+        "Objective.on": (objectives.Turn().on, {"grid": w.grid}),
         # An objective of one's own, whose field and values are arguments too.
         "Objective": (partial(_own_objective, w), {"field": w.field, "factor": np.ones(5)}),
     }

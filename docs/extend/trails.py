@@ -31,7 +31,8 @@ class WalkingTime(Objective):
     def moves(self, grid):
         height, minutes = self.height(grid), np.zeros((8, *grid.shape))
         for heading, (dx, dy) in enumerate(HEADINGS):
-            metres = np.hypot(dx, dy) * grid.resolution
+            # On a map in cells, one is taken for a metre.
+            metres = np.hypot(dx, dy) * (grid.resolution or 1.0)
             # Rolled, each cell has the height of the cell that the step comes from.
             slope = (height - np.roll(height, (dy, dx), axis=(0, 1))) / metres
             # 6 km/h, which is 100 metres a minute, where it goes down a little; slower up and down.
@@ -141,7 +142,7 @@ class Boxes(MapFormat):
 
     name, suffixes = "boxes", (".boxes",)
 
-    def read(self, path, corner_cutting=False, resolution=1.0):
+    def read(self, path, corner_cutting=False, resolution=None):
         lines = read_string(path, 10**7).splitlines() or [""]
         width, height = self._numbers(path, 1, lines[0], ["width", "height"])
         check_size(path, width, height)

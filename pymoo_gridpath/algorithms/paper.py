@@ -11,8 +11,9 @@ from pymoo.termination.max_gen import MaximumGenerationTermination
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.factory import make_algorithm
+from pymoo_gridpath.fields import PAPER_VARIANCE
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.objectives import Objective, make_objectives
+from pymoo_gridpath.objectives import Objective, Vulnerability, make_objectives
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.problems import GridPathProblem
 
@@ -20,6 +21,9 @@ from pymoo_gridpath.problems import GridPathProblem
 POP_SIZE, N_GEN, PENALTY = 500, 500, 1.0
 #: The coding that the paper found best.
 REPRESENTATION = "integer"
+
+
+_VULNERABILITY = Vulnerability(variance=PAPER_VARIANCE)
 
 
 class Setup(NamedTuple):
@@ -67,6 +71,8 @@ def ahmed_deb_2013(
         Cells (x, y); in the paper the bottom-left and the top-right corner.
     representation : {"integer", "binary", "mixed", "absolute"}, default "integer"
     objectives : sequence of str or Objective, default ("length", "vulnerability")
+        By the name "vulnerability" the paper's is meant, whatever the map: `Vulnerability` with a variance of 0.5 squared
+        cells.
     pop_size : int, default 500
         The paper takes 500, and 200 for Table 1.
     n_gen : int, default 500
@@ -98,7 +104,8 @@ def ahmed_deb_2013(
     for name, value in (("pop_size", pop_size), ("n_gen", n_gen)):
         checks.whole(name, value, 1)
     checks.instance("termination", termination, Termination, " of pymoo", optional=True)
-    made = make_objectives(objectives)
+    # Of which nothing is said is the paper's.
+    made = [_VULNERABILITY if type(one) is Vulnerability and not vars(one) else one for one in make_objectives(objectives)]
     obstacles, penalty = paper_treatment(len(made), problem_options.pop("obstacles", None), penalty)
     problem = GridPathProblem(grid, start, goal, representation, made, obstacles, penalty, **problem_options)
     if len(made) == 1:

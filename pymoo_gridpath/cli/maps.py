@@ -37,7 +37,7 @@ _READING = ("resolution", "unknown", "threshold", "corner_cutting", "moves")
 def add_reading(parser: argparse.ArgumentParser) -> None:
     """Add the options by which maps are read."""
     group = parser.add_argument_group("reading the map")
-    group.add_argument("--resolution", type=float, metavar="M", help="metres a cell, for formats that do not say")
+    group.add_argument("--resolution", type=float, metavar="M", help="metres a cell, for maps that do not say")
     group.add_argument("--unknown", choices=("free", "occupied"), help="what unknown cells of ROS maps and images count as")
     group.add_argument(
         "--threshold", type=float, metavar="T", help="grey level below which an image's pixel is occupied, 0 to 1"
@@ -90,12 +90,9 @@ def _info(arguments) -> int:
     known = query_of(arguments.map)
     occupied = grid.n_occupied
     sizes = np.bincount(grid.regions.ravel())[1:]
-    x, y, yaw = grid.origin
     rows = {
         "name": grid.name,
-        "size": f"{grid.width} x {grid.height} cells, {grid.width * grid.resolution:g} x {grid.height * grid.resolution:g} m",
-        "resolution": f"{grid.resolution:g} m a cell",
-        "origin": f"x {x:g} m, y {y:g} m, yaw {yaw:g} rad, the corner of cell 0,0",
+        **_metres_of(grid),
         "occupied": f"{occupied} cells, {occupied / grid.occupied.size:.1%}",
         **({} if (unknown := unknown_of(grid)) is None else {"unknown": unknown}),
         "free regions": f"{len(sizes)}" + (f", the largest of {sizes.max()} cells" if len(sizes) else ""),
@@ -107,6 +104,19 @@ def _info(arguments) -> int:
         print(f"{key:<13} {visible(value)}")
     show(pictures.Scene(grid.occupied, grid.unknown))
     return EXIT_OK
+
+
+def _metres_of(grid: OccupancyGrid) -> dict[str, str]:
+    """Return the size of a map in words, and where it lies if it has metres."""
+    size = f"{grid.width} x {grid.height} cells"
+    if grid.resolution is None:
+        return {"size": size, "resolution": "not stated: a map in cells; --resolution M says the metres a cell"}
+    x, y, yaw = grid.origin
+    return {
+        "size": f"{size}, {grid.width * grid.resolution:g} x {grid.height * grid.resolution:g} m",
+        "resolution": f"{grid.resolution:g} m a cell",
+        "origin": f"x {x:g} m, y {y:g} m, yaw {yaw:g} rad, the corner of cell 0,0",
+    }
 
 
 def show(scene: pictures.Scene) -> None:

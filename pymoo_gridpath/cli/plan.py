@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 DEFAULT_MAP = "warehouse"
 
+RISKS = ("robot", "paper", "inflation")
+
 # Rows of the printed table; the files hold all paths.
 MAX_ROWS = 40
 
@@ -58,7 +60,19 @@ def add_plan_command(commands) -> None:
         type=lambda text: text.split(","),
         default=["length", "vulnerability"],
         metavar="A,B",
-        help="some of length, vulnerability, turn (default: length,vulnerability)",
+        help="some of length, vulnerability, turn, inflation (default: length,vulnerability)",
+    )
+    search.add_argument(
+        "--risk",
+        choices=RISKS,
+        help="what vulnerability means: robot, a bell of the nearest obstacle in metres (default on maps that state their "
+        "resolution); paper, a sum of bells in cells (default on others); inflation, the formula of navigation2",
+    )
+    search.add_argument(
+        "--sigma-m",
+        type=float,
+        metavar="M",
+        help="standard deviation of the robot's risk in metres (default: 0.3, at least 2 cells)",
     )
     search.add_argument(
         "--obstacles", choices=("penalty", "constraint", "limit"), help="how collisions are ruled out (default: penalty)"
@@ -113,11 +127,15 @@ def _plan(arguments) -> int:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
     map_name = arguments.map or DEFAULT_MAP
     grid = load(map_name, arguments)
+    if arguments.units == "m":
+        # Now, and not once the search has ended.
+        grid.check_resolution("--units m")
     start, goal = grid.check_query(*ends_of(grid, query_of(map_name), arguments.start, arguments.goal, option="--"))
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
     grid = grid.inflate(arguments.radius)
     check_grown(grid, arguments.radius, start, goal)
+    objectives = _objectives(arguments, grid)
     representation = arguments.representation or default_representation(grid.corner_cutting, arguments.axis)
     name = arguments.algorithm or ("nsga2" if len(arguments.objectives) > 1 else "ga")
     spec = find_algorithm(name, len(arguments.objectives))
@@ -128,7 +146,7 @@ def _plan(arguments) -> int:
         start,
         goal,
         representation=representation,
-        objectives=arguments.objectives,
+        objectives=objectives,
         obstacles=arguments.obstacles or "penalty",
         penalty=arguments.penalty,
         potential_limit=arguments.potential_limit,
@@ -181,6 +199,29 @@ def _plan(arguments) -> int:
 
 
 # -- parts ---------------------------------------------------------------------------------------------------------------
+
+
+def _objectives(arguments, grid: OccupancyGrid) -> list:
+    """Return the objectives asked for, with the risk that is meant in the place of the vulnerability."""
+    from pymoo_gridpath.fields import PAPER_VARIANCE
+    from pymoo_gridpath.objectives import Inflation, Vulnerability
+
+    risk, sigma_m = arguments.risk, arguments.sigma_m
+    given = "--risk" if sigma_m is None else "--sigma-m"
+    if risk is None and sigma_m is None:
+        return arguments.objectives
+    if Vulnerability.name not in arguments.objectives:
+        raise GridPathError(f"{given} is for the objective vulnerability, which is not among --objectives")
+    if sigma_m is not None and risk not in (None, "robot"):
+        raise GridPathError(f"--sigma-m is for the robot's risk, not for --risk {risk}")
+    if risk == "paper":
+        meant = Vulnerability(variance=PAPER_VARIANCE)
+    elif risk == "inflation":
+        meant = Inflation()
+    else:
+        grid.check_resolution(f"{given} {risk if sigma_m is None else f'{sigma_m:g}'}")
+        meant = Vulnerability(sigma_m=sigma_m)
+    return [meant if name == Vulnerability.name else name for name in arguments.objectives]
 
 
 def _needed(grid: OccupancyGrid, start, representation: str, arguments, whole_front: bool) -> str:

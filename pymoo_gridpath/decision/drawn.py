@@ -69,7 +69,7 @@ def record_scene(record) -> Scene:
 def record_html(record) -> str:
     """Return a picture of a path beside its measures."""
     rows = {
-        "length": f"{record.length:.5g} cells, {record.length_m:.5g} m",
+        "length": f"{record.length:.5g} cells" + ("" if record.length_m is None else f", {record.length_m:.5g} m"),
         "vulnerability": f"{record.vulnerability:.5g}",
         "turn": f"{record.turn:g}\u00b0",
         "clearance": f"{record.clearance:.5g} cells",

@@ -102,8 +102,9 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     if hidden:
         lines.append(f"... and {hidden} more")
     if trade_off.least_length is not None:
-        metres = trade_off.least_length * trade_off.problem.grid.resolution
-        shortest = f"{trade_off.least_length:.3f} ({metres:.3f} m)"
+        resolution = trade_off.problem.grid.resolution
+        metres = "" if resolution is None else f" ({trade_off.least_length * resolution:.3f} m)"
+        shortest = f"{trade_off.least_length:.3f}{metres}"
         still = " where nothing moves" if trade_off.problem.representation.timed else ""
         lines.append(f"for comparison, the shortest of all paths on this grid{still} has length {shortest}")
     if trade_off.advice:

@@ -5,9 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.fields import BoxedField, obstacle_potential
-from pymoo_gridpath.objectives import Vulnerability, boxed_field_of, prepared
+from pymoo_gridpath.objectives import Risk, Vulnerability, boxed_field_of, prepared
 from pymoo_gridpath.problems.members import are_legal
 from pymoo_gridpath.representations.base import representation_of
+
+
+def risk_of(problem) -> Risk | None:
+    """Return the objective by which a problem says how safe paths are, None if it has none."""
+    return next((objective for objective in problem.objectives if isinstance(objective, Risk)), None)
 
 
 class PathMeasures:
@@ -26,19 +31,22 @@ class PathMeasures:
     Attributes
     ----------
     field : numpy.ndarray, shape (height, width) of the representation's box
-        The potential whose sum is the vulnerability; the default one if that is no such sum.
+        The potential whose sum the problem minimises as its risk, or else whose sum is the vulnerability; the default one if
+        that is no such sum.
     """
 
     def __init__(self, problem):
         representation_of(problem)
         given = [objective for objective in problem.objectives if objective.name == Vulnerability.name]
         self.problem = problem
-        self._objective = given[0] if given else Vulnerability()
+        self._objective = given[0] if given else Vulnerability().on(problem.grid)
         box = problem.representation.box
         field = boxed_field_of(self._objective, problem.grid, box)
+        self._prepared = prepared(self._objective, problem.representation, field)
+        if (risk := risk_of(problem)) is not None and risk is not self._objective:
+            field = boxed_field_of(risk, problem.grid, box)
         inside = field.inside if isinstance(field, BoxedField) else field
         self.field = obstacle_potential(problem.grid, box=box) if inside is None else inside
-        self._prepared = prepared(self._objective, problem.representation, field)
 
     def vulnerability(self, paths) -> np.ndarray:
         """Return the vulnerability of N paths, shape (N,)."""

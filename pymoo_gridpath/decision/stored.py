@@ -20,6 +20,7 @@ from pymoo_gridpath.problems import GridPathProblem
 from pymoo_gridpath.representations import REPRESENTATIONS
 
 _MEASURES = ("length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance")
+_IN_METRES = ("length_m",)
 _FIELDS = ("cells", "names", "genes", "objectives", *_MEASURES)
 
 # A file of a few bytes shall not take more memory than any real map.
@@ -131,7 +132,8 @@ def _made(content: dict, problem) -> TradeOffSet:
     records = content["paths"]
     X = checks.array("genes", [record["genes"] for record in records], (None, problem.n_var), expected="rows of genes")
     F = np.array([[_number(record["objectives"][name]) for name in problem.objective_names] for record in records])
-    measures = {name: np.array([_number(record[name]) for record in records]) for name in _MEASURES}
+    known = [name for name in _MEASURES if name not in _IN_METRES or problem.grid.resolution is not None]
+    measures = {name: np.array([_number(record[name]) for record in records]) for name in known}
     for name, values in zip(problem.objective_names, F.T, strict=True):
         measures.setdefault(name, values)
     # What were whole numbers are whole numbers again.

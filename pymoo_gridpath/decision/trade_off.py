@@ -17,7 +17,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.known import find_algorithm
 from pymoo_gridpath.decision import drawn, export, provenance
 from pymoo_gridpath.decision.knee import knee_point
-from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.decision.measures import PathMeasures, risk_of
 from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
@@ -48,10 +48,12 @@ class PathRecord:
         Which of `NAMES` it goes by, or "earliest".
     cells : numpy.ndarray of int, shape (n_cells, 2)
         Visited cells (x, y), start and goal included; of a path in time its cell at each tick.
-    points : numpy.ndarray of float, shape (n_cells, 2)
-        Their centres in metres in the map's frame.
-    length, length_m : float
-        Length in cells and in metres.
+    points : numpy.ndarray of float, shape (n_cells, 2), or None
+        Their centres in metres in the map's frame; None on a map in cells.
+    length : float
+        Length in cells.
+    length_m : float or None
+        Length in metres; None on a map in cells.
     vulnerability : float
         Sum of the obstacles' potential over the visited cells.
     turn : float
@@ -72,9 +74,9 @@ class PathRecord:
     index: int
     names: tuple[str, ...]
     cells: np.ndarray = field(repr=False)
-    points: np.ndarray = field(repr=False)
+    points: np.ndarray | None = field(repr=False)
     length: float
-    length_m: float
+    length_m: float | None
     vulnerability: float
     turn: float
     interfering_cells: int
@@ -111,8 +113,8 @@ class TradeOffSet:
     paths : ColumnPaths or CellPaths
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
-        ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
-        [cells] and every other objective of the problem by its name.
+        ``length`` [cells], ``length_m`` (but for maps in cells), ``vulnerability``, ``turn`` [degrees],
+        ``interfering_cells``, ``clearance`` [cells] and every other objective of the problem by its name.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -121,9 +123,10 @@ class TradeOffSet:
     Notes
     -----
     ``trade_off["knee"]`` or ``trade_off.knee`` is a `PathRecord`; so is ``trade_off[0]``. `shortest`, `safest` and `smoothest`
-    have the least length, vulnerability and turn *of the set*, whatever its objectives; ties go to the path that is better
-    in the first objective that differs. `knee` is defined in `knee_point`, on the objectives of the problem. Of paths in time,
-    those of a `TimedPathProblem`, `earliest` is the one that arrives first.
+    have the least length, vulnerability and turn *of the set*, whatever its objectives; of a problem with another `Risk`, the
+    safest path is that of which this is least. Ties go to the path that is better in the first objective that differs. `knee`
+    is defined in `knee_point`, on the objectives of the problem. Of paths in time, those of a `TimedPathProblem`, `earliest` is
+    the one that arrives first.
 
     References
     ----------
@@ -227,7 +230,7 @@ class TradeOffSet:
         length = np.asarray(self.paths.length, dtype=float)
         found = {
             "length": length,
-            "length_m": length * grid.resolution,
+            **({} if grid.resolution is None else {"length_m": length * grid.resolution}),
             "vulnerability": measures.vulnerability(self.paths),
             "turn": np.asarray(self.paths.turn),
             "interfering_cells": np.asarray(self.paths.interfering_cells),
@@ -249,9 +252,16 @@ class TradeOffSet:
     def named(self) -> dict[str, int]:
         """Index of the path that goes by each of `NAMES`, and of paths in time that of the "earliest"."""
         # Paths stand in the order of their objectives, so the first of equal ones is the better.
-        least = {name: int(np.argmin(self.measures[of])) for name, of in _LEAST.items() if of in self.measures}
+        least_of = {**_LEAST, "safest": self._safety}
+        least = {name: int(np.argmin(self.measures[of])) for name, of in least_of.items() if of in self.measures}
         found = {**least, "knee": knee_point(self.F)}
         return {name: found[name] for name in names_for(self.objective_names)}
+
+    @property
+    def _safety(self) -> str:
+        """The measure of which the safest path has the least."""
+        risk = risk_of(self.problem)
+        return _LEAST["safest"] if risk is None else risk.name
 
     def index(self, name: str) -> int:
         """Return the index of the path that goes by a name.
@@ -282,7 +292,7 @@ class TradeOffSet:
 
     @property
     def safest(self) -> PathRecord:
-        """The path of least vulnerability."""
+        """The path of least risk: by default of least vulnerability."""
         return self["safest"]
 
     @property
@@ -305,21 +315,21 @@ class TradeOffSet:
         """Return the path at an index or of a name."""
         k = self.index(key) if isinstance(key, str) else range(len(self))[key]
         value = {name: values[k].item() for name, values in self.measures.items()}
-        cells = self._cells[k]
+        cells, grid = self._cells[k], self.problem.grid
         return PathRecord(
             index=k,
             names=self.names(k),
             cells=cells,
-            points=self.problem.grid.to_metres(cells),
+            points=None if grid.resolution is None else grid.to_metres(cells),
             length=value["length"],
-            length_m=value["length_m"],
+            length_m=value.get("length_m"),
             vulnerability=value["vulnerability"],
             turn=value["turn"],
             interfering_cells=value["interfering_cells"],
             clearance=value["clearance"],
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
-            grid=self.problem.grid,
+            grid=grid,
         )
 
     # -- words and files ----------------------------------------------------------------------------------------------
@@ -346,11 +356,24 @@ class TradeOffSet:
 
     @property
     def advice(self) -> str:
-        """What to try where the shortest path found is over 5 % longer than the shortest of all; empty where it is not.
+        """What to try where there is nothing to choose from, or where the paths are long; empty where all is well.
 
-        It is empty, too, if length is no objective, if the paths are not legal, and where the shortest of all may not be one of
-        them: under a potential limit, and among obstacles that move.
+        The front is one point if a single path is the best by all of several objectives. The shortest path found is long if it
+        is over 5 % longer than the shortest of all. Of that nothing is said if length is no objective, if the paths are not
+        legal, and where the shortest of all may not be one of them: under a potential limit, and among obstacles that move.
         """
+        return "; ".join(filter(None, (self._of_one_point, self._of_long_paths)))
+
+    @property
+    def _of_one_point(self) -> str:
+        if len(self) > 1 or not self.feasible or len(self.objective_names) == 1:
+            return ""
+        risk = risk_of(self.problem)
+        ways = [*filter(None, [risk and risk.wider]), "a further objective, such as turn,"]
+        return f"the front found is one point, a path that is best by every objective; {' or '.join(ways)} may give a choice"
+
+    @property
+    def _of_long_paths(self) -> str:
         others = self.problem.potential_limit is not None or self.problem.representation.timed
         if self.least_length is None or not self.feasible or others:
             return ""

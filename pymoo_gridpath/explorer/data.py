@@ -43,7 +43,7 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     problem = trade_off.problem
     box = drawn_box(trade_off)
     grid = problem.grid.crop(box)
-    resolution = resolution_of(problem.grid)
+    resolution = problem.grid.resolution
     corner = np.array([box.x0, box.y0])
     cells = [np.asarray(record.cells) - corner for record in trade_off]
     field = _levels(drawn_field(trade_off, box), grid)
@@ -59,7 +59,7 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "start": (np.asarray(problem.start) - corner).tolist(),
         "goal": (np.asarray(problem.goal) - corner).tolist(),
         "summary": _summary(trade_off, box, resolution),
-        "caution": "" if trade_off.feasible else f"Not feasible: {trade_off.infeasibility}.",
+        "caution": _caution(trade_off),
         "file_name": re.sub(r"[^A-Za-z0-9._-]+", "-", title).strip("-.")[:60] or "map",
         "field_label": "Potential",
         "columns": _columns(trade_off, resolution),
@@ -68,11 +68,6 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "field": None if field is None else packed(field),
         **packed_paths(cells),
     }
-
-
-def resolution_of(grid: OccupancyGrid) -> float | None:
-    """Return the metres a cell of a map that has them; cells of 1 are those of a map that says nothing."""
-    return None if grid.resolution in (None, 1.0) else grid.resolution
 
 
 def packed(array: np.ndarray) -> dict:
@@ -129,6 +124,13 @@ def _levels(field: np.ndarray, grid: OccupancyGrid) -> np.ndarray | None:
     free = np.where(grid.occupied, 0.0, field)
     top = float(free.max(initial=0.0))
     return np.rint(free / top * 255.0).astype(np.uint8) if 0.0 < top < np.inf else None
+
+
+def _caution(trade_off) -> str:
+    if not trade_off.feasible:
+        return f"Not feasible: {trade_off.infeasibility}."
+    advice = trade_off.advice
+    return f"{advice[0].upper()}{advice[1:]}." if advice else ""
 
 
 def _summary(trade_off, box: Box, resolution: float | None) -> str:

@@ -67,6 +67,14 @@ def as_cell(role: str, cell) -> Cell:
     return x, y
 
 
+def as_resolution(resolution) -> float | None:
+    """Return the side of a cell in metres; None of a map in cells."""
+    if resolution is None:
+        return None
+    expected = "a positive number of metres per cell"
+    return checks.number("resolution", resolution, 0.0, above=True, expected=expected, error=GridError)
+
+
 def as_pose(origin) -> tuple[float, ...]:
     """Return (x, y, yaw)."""
     expected = "(x, y) or (x, y, yaw) in metres and radians"

@@ -23,6 +23,10 @@ class Box(NamedTuple):
         """Height and width."""
         return self.y1 - self.y0, self.x1 - self.x0
 
+    def within(self, part: Box) -> Box:
+        """Return where the box lies in another that holds it."""
+        return Box(self.x0 - part.x0, self.y0 - part.y0, self.x1 - part.x0, self.y1 - part.y0)
+
     def grown(self, margin: int, shape: tuple[int, int]) -> Box:
         """Return the box with so many more cells on each side, as far as an array of that shape goes."""
         height, width = shape

@@ -16,7 +16,7 @@ from scipy.sparse import csgraph
 from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError, visible
-from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_pose, pairs
+from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_pose, as_resolution, pairs
 from pymoo_gridpath.grid.box import Box
 from pymoo_gridpath.grid.cells import Cells
 from pymoo_gridpath.grid.inflation import disc_of, grown_by
@@ -41,10 +41,12 @@ class OccupancyGrid(Cells):
     occupied : array_like of bool, shape (height, width)
         True where a cell is occupied. Row 0 is the bottom row. The array is copied, unless it is one of booleans that is
         read-only, row by row, and no view of another.
-    resolution : float, default 1.0
-        Side of a cell in metres.
+    resolution : float, optional
+        Side of a cell in metres, if that is known. Without it the map is one in cells: nothing on it has metres, and what
+        needs them says so.
     origin : (float, float) or (float, float, float), default (0, 0, 0)
-        Pose of the bottom-left *corner* of cell (0, 0): x and y in metres and yaw in radians, as in ROS.
+        Pose of the bottom-left *corner* of cell (0, 0): x and y in metres and yaw in radians, as in ROS. A map in cells has no
+        other than the default.
     corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell. False is the rule of MovingAI's benchmarks and of a robot with a
         body: both cells beside the step must be free. True is the world of Ahmed and Deb (2013). With "one side" at most one of
@@ -61,7 +63,7 @@ class OccupancyGrid(Cells):
     ------
     GridError
         If the array is not two-dimensional, is empty or holds other values than 0 and 1, or if another argument is out of
-        its range.
+        its range, or an origin is given without a resolution.
 
     Examples
     --------
@@ -77,7 +79,7 @@ class OccupancyGrid(Cells):
     def __init__(
         self,
         occupied: ArrayLike,
-        resolution: float = 1.0,
+        resolution: float | None = None,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         corner_cutting: CornerCutting = False,
         name: str = "grid",
@@ -85,11 +87,11 @@ class OccupancyGrid(Cells):
         moves: int = 8,
     ):
         super().__init__(occupied, corner_cutting, unknown, moves)
-        self._resolution = checks.number(
-            "resolution", resolution, 0.0, above=True, expected="a positive number of metres per cell", error=GridError
-        )
+        self._resolution = as_resolution(resolution)
         self._origin = as_pose(origin)
-        if not math.isfinite(self._resolution * max(self.shape) + max(abs(v) for v in self._origin)):
+        if self._resolution is None and any(self._origin):
+            raise GridError(f"origin is {shown(origin)}, in metres, and no resolution is given, expected both or neither")
+        if not math.isfinite((self._resolution or 0.0) * max(self.shape) + max(abs(v) for v in self._origin)):
             raise GridError(f"resolution {resolution} and origin {origin!r} put the map beyond what numbers can hold")
         self._name = checks.text("name", name, GridError)
 
@@ -98,7 +100,7 @@ class OccupancyGrid(Cells):
         cls,
         occupancy: ArrayLike,
         width: int | None = None,
-        resolution: float = 1.0,
+        resolution: float | None = None,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         occupied_from: float = 65,
         free_up_to: float = 25,
@@ -115,7 +117,7 @@ class OccupancyGrid(Cells):
             -1 where nothing is known, else 0 (free) to 100 (occupied) percent. Row 0 is the bottom row, as in the message.
         width : int, optional
             Columns, ``info.width``, needed where the array is flat.
-        resolution : float, default 1.0
+        resolution : float, optional
             ``info.resolution``. The message has it in single precision; 0.05000000074505806 is taken for 0.05.
         origin : (float, float) or (float, float, float), default (0, 0, 0)
             Pose of the bottom-left corner of cell (0, 0), x and y in metres and yaw in radians; of ``info.origin`` the yaw is
@@ -144,14 +146,14 @@ class OccupancyGrid(Cells):
         ([[0, 1, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 0]])
         """
         occupied, unseen = cells_of_occupancy(occupancy, width, occupied_from, free_up_to, unknown)
-        metres = checks.number("resolution", resolution, expected="a positive number of metres per cell", error=GridError)
-        return cls(occupied, decimal_of(metres), origin, corner_cutting, name, unseen, moves)
+        metres = as_resolution(resolution)
+        return cls(occupied, None if metres is None else decimal_of(metres), origin, corner_cutting, name, unseen, moves)
 
     # -- what it is ---------------------------------------------------------------------------------------------------
 
     @property
-    def resolution(self) -> float:
-        """Side of a cell in metres."""
+    def resolution(self) -> float | None:
+        """Side of a cell in metres; None of a map in cells."""
         return self._resolution
 
     @property
@@ -203,17 +205,20 @@ class OccupancyGrid(Cells):
 
     def __repr__(self) -> str:
         return (
-            f"<OccupancyGrid {self._name!r}: {self.width} x {self.height} cells of {self._resolution:g} m, "
+            f"<OccupancyGrid {self._name!r}: {self.width} x {self.height} cells{self._of_metres}, "
             f"{self.n_occupied} occupied, {steps_in_words(self._moves, self._corner_cutting)}>"
         )
+
+    @property
+    def _of_metres(self) -> str:
+        return "" if self._resolution is None else f" of {self._resolution:g} m"
 
     def _repr_png_(self) -> bytes:
         return pictures.png(pictures.Scene(self._occupied, self._unknown))
 
     def _repr_html_(self) -> str:
         rows = {
-            "cells": f"{self.width} x {self.height}",
-            "metres a cell": f"{self._resolution:g}",
+            "cells": f"{self.width} x {self.height}{self._of_metres}",
             "occupied": f"{self.n_occupied} ({self.n_occupied / self._occupied.size:.0%})",
             "steps": steps_in_words(self._moves, self._corner_cutting),
         }
@@ -310,6 +315,27 @@ class OccupancyGrid(Cells):
             )
         return start, goal
 
+    def check_resolution(self, need: str) -> float:
+        """Return the side of a cell in metres, if the map states it.
+
+        Parameters
+        ----------
+        need : str
+            What needs it, as the error message names it, for instance ``"a radius in metres"``.
+
+        Raises
+        ------
+        GridError
+            If the map is one in cells.
+        """
+        if self._resolution is None:
+            raise GridError(
+                f"the grid {shown(self._name)} is in cells, and {checks.text('need', need, GridError)} needs their size; "
+                "expected a map that states its resolution, or one given in metres per cell: resolution=0.05, or "
+                "--resolution 0.05"
+            )
+        return self._resolution
+
     def to_metres(self, cells: ArrayLike) -> np.ndarray:
         """Return the centres of cells in the map's frame.
 
@@ -322,8 +348,14 @@ class OccupancyGrid(Cells):
         -------
         numpy.ndarray, shape (..., 2)
             Metres.
+
+        Raises
+        ------
+        GridError
+            If the cells are no pairs of numbers, or the map is one in cells.
         """
-        local = (pairs("cells", cells, "cells (x, y)").astype(float) + 0.5) * self._resolution
+        resolution = self.check_resolution("a point in metres")
+        local = (pairs("cells", cells, "cells (x, y)").astype(float) + 0.5) * resolution
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
         return local @ np.array([[cos, sin], [-sin, cos]]) + np.array([x0, y0])
@@ -343,13 +375,14 @@ class OccupancyGrid(Cells):
         Raises
         ------
         GridError
-            If the points are no pairs of finite numbers, or lie more than 2**52 cells away.
+            If the points are no pairs of finite numbers, or lie more than 2**52 cells away; or if the map is one in cells.
         """
+        resolution = self.check_resolution("a point in metres")
         x0, y0, yaw = self._origin
         cos, sin = math.cos(yaw), math.sin(yaw)
         local = (pairs("points", points, "points (x, y) in metres") - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
         with np.errstate(over="ignore"):
-            cells = np.floor(local / self._resolution)
+            cells = np.floor(local / resolution)
         if not (np.abs(cells) <= _FARTHEST).all():
             raise GridError("points lie further away than cells can be counted, expected metres in the frame of the map")
         return cells.astype(int)
@@ -383,12 +416,13 @@ class OccupancyGrid(Cells):
         box = check_box(box, self)
         if box == self.whole:
             return self
+        occupied = self._occupied[box.slices]
+        if self._resolution is None:
+            return self.replace(occupied=occupied)
         x0, y0, yaw = self._origin
         dx, dy = box.x0 * self._resolution, box.y0 * self._resolution
         cos, sin = math.cos(yaw), math.sin(yaw)
-        return self.replace(
-            occupied=self._occupied[box.slices], origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw)
-        )
+        return self.replace(occupied=occupied, origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw))
 
     def downsample(self, factor: int) -> OccupancyGrid:
         """Return a grid of larger cells, each of ``factor`` x ``factor`` of these, occupied where any of them is.
@@ -405,7 +439,8 @@ class OccupancyGrid(Cells):
         factor = checks.whole("factor", factor, 1, most, expected=f"a whole number of cells from 1 to {most}", error=GridError)
         unknown = None if self._unknown is None else blocks_of(self._unknown, factor, False)
         occupied = blocks_of(self._occupied, factor, True)
-        return self.replace(occupied=occupied, unknown=unknown, resolution=factor * self._resolution)
+        resolution = None if self._resolution is None else factor * self._resolution
+        return self.replace(occupied=occupied, unknown=unknown, resolution=resolution)
 
     def inflate(self, radius: float) -> OccupancyGrid:
         """Return a grid on which a disc of ``radius`` metres can be planned for as a point.
@@ -416,7 +451,7 @@ class OccupancyGrid(Cells):
         Raises
         ------
         GridError
-            If the radius is negative or not finite.
+            If the radius is negative or not finite, or not zero on a map in cells, for which there is `grow`.
 
         Warns
         -----
@@ -451,10 +486,12 @@ class OccupancyGrid(Cells):
         Raises
         ------
         GridError
-            If the radius is negative or not finite.
+            If the radius is negative or not finite, or not zero on a map in cells.
         """
         radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
-        return min(radius / self._resolution, float(sum(self.shape)))
+        if radius == 0.0:
+            return 0.0
+        return min(radius / self.check_resolution("a radius in metres"), float(sum(self.shape)))
 
     def shortest_lengths(self, start: Sequence[int], limit: float = math.inf) -> np.ndarray:
         """Return the length in cells of the shortest path from ``start`` to every cell.

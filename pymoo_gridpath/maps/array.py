@@ -21,7 +21,7 @@ MAGIC = b"\x93NUMPY"
 def read_npy(
     path: str | os.PathLike[str],
     corner_cutting: CornerCutting = False,
-    resolution: float = 1.0,
+    resolution: float | None = None,
     origin: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> OccupancyGrid:
     """Read a map from a ``.npy`` file.
@@ -33,10 +33,10 @@ def read_npy(
         in `OccupancyGrid`, not the top one as in an image. Pickled objects are never loaded.
     corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell.
-    resolution : float, default 1.0
-        Side of a cell in metres.
+    resolution : float, optional
+        Side of a cell in metres; without it the map is one in cells.
     origin : (float, float) or (float, float, float), default (0, 0, 0)
-        Pose of the grid in metres and radians.
+        Pose of the grid in metres and radians, beside a resolution only.
 
     Returns
     -------

@@ -58,7 +58,7 @@ class MapFormat(ABC):
     ...
     ...     name, suffixes = "runs", (".runs",)
     ...
-    ...     def read(self, path, corner_cutting=False, resolution=1.0):
+    ...     def read(self, path, corner_cutting=False, resolution=None):
     ...         text = read_string(path, 10**6)
     ...         try:
     ...             rows = [[int(word) for word in line.split()] for line in text.splitlines()]

@@ -110,7 +110,7 @@ def read_image(
     threshold: float = 0.5,
     unknown: str = "free",
     corner_cutting: CornerCutting = False,
-    resolution: float = 1.0,
+    resolution: float | None = None,
     origin: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> OccupancyGrid:
     """Read a map from an image, one cell per pixel.
@@ -130,10 +130,10 @@ def read_image(
         means.
     corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell.
-    resolution : float, default 1.0
-        Side of a cell in metres.
+    resolution : float, optional
+        Side of a cell in metres; without it the map is one in cells.
     origin : (float, float) or (float, float, float), default (0, 0, 0)
-        Pose of the grid in metres and radians.
+        Pose of the grid in metres and radians, beside a resolution only.
 
     Returns
     -------

@@ -27,8 +27,8 @@ def load_map(path: str | os.PathLike[str], moves: int | None = None, **options) 
         How many neighbours a cell has. If not given, the file decides where it says so, else 8.
     **options
         Passed to the reader; None means not given. All readers take ``corner_cutting``; those of formats that say nothing about
-        it (all but ROS) take ``resolution`` and ``origin``; `read_ros` and `read_image` take ``unknown``, `read_image` also
-        ``threshold``.
+        it (all but ROS) take ``resolution``, without which the map is one in cells, and ``origin``; `read_ros` and `read_image`
+        take ``unknown``, `read_image` also ``threshold``.
 
     Returns
     -------

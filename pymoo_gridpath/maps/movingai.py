@@ -64,7 +64,7 @@ class ScenQuery:
 def read_movingai(
     path: str | os.PathLike[str],
     corner_cutting: CornerCutting = False,
-    resolution: float = 1.0,
+    resolution: float | None = None,
     origin: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> OccupancyGrid:
     """Read a map of the MovingAI benchmarks.
@@ -78,10 +78,10 @@ def read_movingai(
         The ``.map`` file; its first row is the top one.
     corner_cutting : bool or "one side", default False
         Whether a diagonal step may touch an occupied cell. The benchmark's lengths hold for False.
-    resolution : float, default 1.0
-        Side of a cell in metres; the format has none.
+    resolution : float, optional
+        Side of a cell in metres. The format has none; without it the map is one in cells.
     origin : (float, float) or (float, float, float), default (0, 0, 0)
-        Pose of the grid in metres and radians; the format has none.
+        Pose of the grid in metres and radians, beside a resolution only; the format has none.
 
     Returns
     -------

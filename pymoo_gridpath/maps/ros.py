@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pymoo_gridpath.errors import counted
+from pymoo_gridpath.checks import shown
+from pymoo_gridpath.errors import MapError, counted
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.maps._files import blocks, check_unknown, make_grid, warn
@@ -112,6 +113,10 @@ class RosFormat(MapFormat):
         return b"\0" not in head and re.search(rb"^image[ \t]*:", head, re.MULTILINE) is not None
 
     def write(self, path, grid):
+        if grid.resolution is None:
+            raise MapError(
+                path, f"the grid {shown(grid.name)} is in cells, expected one with a resolution, which a ROS map states"
+            )
         image = path.with_suffix(".pgm")
         grey = np.where(grid.occupied[::-1], np.uint8(SAVED_OCCUPIED), np.uint8(SAVED_FREE))
         if grid.unknown is not None:

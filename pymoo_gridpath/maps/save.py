@@ -16,7 +16,8 @@ def save_map(grid: OccupancyGrid, path: str | os.PathLike[str]) -> Path:
     ==========  ==================================================================================================
     Suffix      What is kept besides the cells
     ==========  ==================================================================================================
-    ``.yaml``   ROS: resolution, origin and unknown cells; the image stands beside it, by the same name and ``.pgm``
+    ``.yaml``   ROS: resolution, origin and unknown cells; the image stands beside it, by the same name and ``.pgm``;
+                no map in cells
     ``.txt``    plain text: name, resolution, origin, moves, and how corners may be cut
     ``.map``    MovingAI: nothing
     ``.npy``    NumPy: nothing

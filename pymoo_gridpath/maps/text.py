@@ -7,8 +7,9 @@ A file is, in UTF-8,
    ==================  ==================================================================================
    ``name``            what figures call the map; the file's name if absent
    ``title``           one line about it
-   ``resolution``      side of a cell in metres, 1 if absent
-   ``origin``          x y yaw (or x y) of the bottom-left corner in metres and radians, 0 0 0 if absent
+   ``resolution``      side of a cell in metres; if absent, the map is one in cells
+   ``origin``          x y yaw (or x y) of the bottom-left corner in metres and radians, 0 0 0 if absent; only beside a
+                       resolution
    ``corner_cutting``  true, false or one side, false if absent
    ``moves``           8, or 4 for no diagonal steps, 8 if absent
    ``start``           x y of a good start, a free cell counted from the bottom left
@@ -105,7 +106,7 @@ def read_text(
     corner_cutting : bool or "one side", optional
         Whether a diagonal step may touch an occupied cell. If not given, the header decides, else False.
     resolution : float, optional
-        Side of a cell in metres. If not given, the header decides, else 1.
+        Side of a cell in metres. If not given, the header decides; if that says nothing, the map is one in cells.
     origin : (float, float) or (float, float, float), optional
         Pose of the grid in metres and radians. If not given, the header decides, else (0, 0, 0).
 
@@ -170,8 +171,8 @@ class TextFormat(MapFormat):
     def write(self, path, grid):
         lines = {
             "name": " ".join(visible(grid.name).split()),
-            "resolution": repr(grid.resolution),
-            "origin": " ".join(map(repr, grid.origin)),
+            "resolution": "" if grid.resolution is None else repr(grid.resolution),
+            "origin": "" if grid.resolution is None else " ".join(map(repr, grid.origin)),
             "corner_cutting": str(grid.corner_cutting).lower(),
             "moves": "" if grid.moves == 8 else str(grid.moves),
         }

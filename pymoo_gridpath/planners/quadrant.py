@@ -70,7 +70,7 @@ class QuadrantSelection(Planner):
     Parameters
     ----------
     speed : float, default 0.24
-        Metres per second; the paper's robot. The side of a cell is the grid's ``resolution``.
+        Metres per second; the paper's robot. On a map in cells, which says nothing of metres, cells per second.
     turn_seconds : float, default 0.02
         Seconds that a turn of one degree takes. The first step turns by nothing.
     alternatives : int, default 1
@@ -156,7 +156,7 @@ class QuadrantSelection(Planner):
         start, goal = moves.index(problem.start), moves.index(problem.goal)
         found = branches(moves, grid, start, goal, self.strict)
         order = np.argsort([octile(moves.width, hit, goal) for hit in found.hits], kind="stable").astype(np.int64)
-        raw, seconds = self._listed(found, order, moves, grid.resolution)
+        raw, seconds = self._listed(found, order, moves, grid.resolution or 1.0)
         chosen = self._chosen(raw, moves)
         self.found = QuadrantPaths(
             _split(moves, raw),

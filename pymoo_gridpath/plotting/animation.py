@@ -87,7 +87,7 @@ def animate_moving(
     if problem.n_obj < 2:
         raise GridPathError("a front of one objective cannot be drawn, expected a run with two or more")
     reference, potential = checks.flag("reference", reference), checks.flag("potential", potential)
-    style.check_units(units)
+    style.check_units(units, problem.grid)
     fps = checks.number("fps", fps, 0.0, 60.0, above=True, expected="pictures a second, above 0, at most 60")
     dpi = checks.number("dpi", dpi, 10.0, _MOST_DPI, expected=f"dots per inch, 10 to {_MOST_DPI}")
     writer = None if file is None else _writer(file)

@@ -61,10 +61,11 @@ def plot_map(
     Raises
     ------
     GridPathError
-        If the units are unknown, the field has another shape than the grid, or start or goal is off the grid.
+        If the units are unknown, or metres on a map in cells; the field has another shape than the grid; or start or goal is
+        off the grid.
     """
     check_grid(grid)
-    style.check_units(units)
+    style.check_units(units, grid)
     style.check_axes(ax)
     legend = checks.flag("legend", legend)
     field = _field(grid, potential)
@@ -120,14 +121,14 @@ def plot_paths(
     Raises
     ------
     GridPathError
-        If a name or the units are unknown.
+        If a name or the units are unknown, or metres on a map in cells.
 
     References
     ----------
     Ahmed and Deb (2013), figures 5 to 7.
     """
     groups = style.by_path(check_set(trade_off), which)
-    style.check_units(units)
+    style.check_units(units, trade_off.problem.grid)
     style.check_axes(ax)
     all_paths, legend = checks.flag("all_paths", all_paths), checks.flag("legend", legend)
     problem = trade_off.problem
@@ -210,7 +211,7 @@ def _cells_to_axes(grid: OccupancyGrid, units: Units, box: Box) -> Affine2D:
     if units == "cells":
         return Affine2D().translate(box.x0, box.y0)
     x0, y0, yaw = grid.origin
-    return Affine2D().translate(0.5, 0.5).scale(grid.resolution).rotate(yaw).translate(x0, y0)
+    return Affine2D().translate(0.5, 0.5).scale(grid.check_resolution("an axis in metres")).rotate(yaw).translate(x0, y0)
 
 
 def _draw_mark(

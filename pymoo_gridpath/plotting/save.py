@@ -71,8 +71,7 @@ def save_figures(
     GridPathError
         If an argument is of another kind or out of its range, a format is unknown, or a file cannot be written.
     """
-    check_set(trade_off)
-    style.check_units(units)
+    style.check_units(units, check_set(trade_off).problem.grid)
     dpi = checks.number("dpi", dpi, 1.0, _MOST_DPI, expected=f"dots per inch, 1 to {_MOST_DPI}")
     formats = checks.names("formats", formats)
     for name in formats:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import names_for
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
 from pymoo_gridpath.pictures import OTHERS as OTHERS
 from pymoo_gridpath.pictures import PALETTE
@@ -145,10 +146,12 @@ def widen_limits(ax: Axes) -> None:
             formatter.set_useOffset(False)
 
 
-def check_units(units: str) -> None:
-    """Refuse units of a map that are none."""
+def check_units(units: str, grid: OccupancyGrid) -> None:
+    """Refuse units of a map that are none, and metres of a map that has none."""
     if not (isinstance(units, str) and units in ("cells", "m")):
         raise GridPathError(f"units is {checks.shown(units)}, expected 'cells' or 'm'")
+    if units == "m":
+        grid.check_resolution("an axis in metres")
 
 
 def check_axes(ax: Axes | None) -> None:

@@ -58,7 +58,8 @@ class GridPathProblem(Problem):
         "integer" where corners may be cut, which is the world of the paper, or an ``axis`` is given, see
         `default_representation`.
     objectives : sequence of str or Objective, default ("length", "vulnerability")
-        What is minimised, in this order; names are "length", "vulnerability" and "turn".
+        What is minimised, in this order; names are "length", "vulnerability", "turn" and "inflation". The vulnerability is in
+        metres on a map that states its resolution, and the paper's on a map in cells, see `Vulnerability`.
     obstacles : {"penalty", "constraint", "limit"}, default "penalty"
         How paths are kept off obstacles.
 
@@ -140,7 +141,7 @@ class GridPathProblem(Problem):
     ):
         self.grid = check_grid(grid)
         self.start, self.goal = grid.check_query(start, goal)
-        self.objectives = make_objectives(objectives)
+        self.objectives = tuple(objective.on(grid) for objective in make_objectives(objectives))
         checks.one_of("obstacles", obstacles, OBSTACLES)
         if obstacles == "constraint" and penalty is not None:
             raise GridPathError("penalty is for obstacles='penalty' and 'limit', not for obstacles='constraint'")

@@ -33,17 +33,17 @@ class Waypoints(NamedTuple):
     ----------
     cells : numpy.ndarray of int, shape (n, 2)
         Cells (x, y).
-    metres : numpy.ndarray of float, shape (n, 2)
-        Their centres in the frame of the map.
+    metres : numpy.ndarray of float, shape (n, 2), or None
+        Their centres in the frame of the map; None on a map in cells.
     """
 
     cells: np.ndarray
-    metres: np.ndarray
+    metres: np.ndarray | None
 
     @classmethod
     def of(cls, grid: OccupancyGrid, cells: np.ndarray) -> Waypoints:
         """Return the waypoints at cells (x, y) of a grid, shape (n, 2)."""
-        return cls(cells, grid.to_metres(cells))
+        return cls(cells, None if grid.resolution is None else grid.to_metres(cells))
 
     @property
     def length(self) -> float:
@@ -51,20 +51,21 @@ class Waypoints(NamedTuple):
         return _length(self.cells)
 
     @property
-    def length_m(self) -> float:
-        """Euclidean length in metres."""
-        return _length(self.metres)
+    def length_m(self) -> float | None:
+        """Euclidean length in metres; None on a map in cells."""
+        return None if self.metres is None else _length(self.metres)
 
     @property
     def curvature(self) -> tuple[float, float]:
-        """Greatest and mean curvature, 1 / m.
+        """Greatest and mean curvature, 1 / m, or one by the side of a cell on a map in cells.
 
         A polyline has none of its own: it is 0 along a piece and infinite at a corner. So the line is cut into pieces of one
         cell, as near as their number allows, and the curvature is Menger's, that of the circle through three of their ends.
         """
-        along_it = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.metres, axis=0).T))])
+        line = self.cells if self.metres is None else self.metres
+        along_it = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
         at = np.linspace(0.0, along_it[-1], max(round(self.length), 2) + 1)
-        points = np.stack([np.interp(at, along_it, self.metres[:, axis]) for axis in (0, 1)], axis=1)
+        points = np.stack([np.interp(at, along_it, line[:, axis]) for axis in (0, 1)], axis=1)
         before, after, both = points[1:-1] - points[:-2], points[2:] - points[1:-1], points[2:] - points[:-2]
         product = np.hypot(*before.T) * np.hypot(*after.T) * np.hypot(*both.T)
         twice = 2.0 * np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])

@@ -36,6 +36,9 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
     "origin": ((1.5, -2.0), (1.5, -2.0, 0.0)),
 }
 
+# An origin is one in metres.
+BESIDE = {"origin": {"resolution": 0.25}}
+
 
 class MapFormatSuite:
     """Tests that every `MapFormat` must pass; inherit from it, and set `format` and `write`.
@@ -125,8 +128,9 @@ class MapFormatSuite:
         assert "corner_cutting" in options
         for name, (value, expected) in OPTIONS.items():
             if name in options:
+                beside = {key: one for key, one in BESIDE.get(name, {}).items() if key in options}
                 assert getattr(load_map(path), name) != expected
-                assert getattr(load_map(path, **{name: value}), name) == expected
+                assert getattr(load_map(path, **beside, **{name: value}), name) == expected
 
     def test_options_that_it_does_not_know_are_refused(self, tmp_path):
         path = self._made(tmp_path, _grids()[-1])

@@ -67,7 +67,7 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
         assert {"points", "length", "vulnerability", "turn", "names"} <= set(path)
     assert document["seed"] == 4
     shortest = load_map(free_map).shortest_lengths((0, 0))[3, 5]
-    assert f"shortest of all paths on this grid has length {shortest:.3f} ({shortest:.3f} m)\n" in done.stdout
+    assert f"shortest of all paths on this grid has length {shortest:.3f}\n" in done.stdout
     assert min(path["length"] for path in paths) >= shortest - 1e-9
 
 
@@ -97,11 +97,11 @@ def test_plan_takes_the_query_of_a_text_map(tmp_path):
 
 def test_files_say_which_map_was_read_and_which_was_planned_on(tmp_path, free_map):
     query = ["--start", "0,0", "--goal", "5,3"]
-    assert run("plan", free_map, *query, "--radius", "0.6", *FAST, "-o", tmp_path / "out").returncode == 0
+    assert run("plan", free_map, *query, "--resolution", "1", "--radius", "0.6", *FAST, "-o", tmp_path / "out").returncode == 0
     document = json.loads((tmp_path / "out" / "paths.json").read_text())
     assert document["settings"]["robot_radius"] == 0.6
     assert document["settings"]["source_map"]["occupied_cells"] == 2
-    assert document["map"]["occupied_cells"] == load_map(free_map).inflate(0.6).n_occupied > 2
+    assert document["map"]["occupied_cells"] == load_map(free_map).grow(0.6).n_occupied > 2
 
 
 def test_figures_of_an_earlier_set_do_not_stay(tmp_path, free_map):
@@ -148,6 +148,43 @@ def test_steps_are_an_option_of_maps(tmp_path, free_map, capsys, options, steps,
     assert (document["map"]["corner_cutting"], document["map"]["moves"]) == steps
     assert main(["info", str(free_map), *options]) == 0
     assert words in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "stated"),
+    [
+        ([], {"name": "vulnerability", "variance": 0.5, "nearest": False, "cutoff": 0.0}),
+        (["--resolution", "0.05"], {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 0.001}),
+        (
+            ["--resolution", "0.05", "--risk", "robot"],
+            {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 0.001},
+        ),
+        (
+            ["--resolution", "0.05", "--sigma-m", "2"],
+            {"name": "vulnerability", "sigma_m": 2.0, "nearest": True, "cutoff": 0.001},
+        ),
+        (
+            ["--resolution", "0.05", "--risk", "paper"],
+            {"name": "vulnerability", "variance": 0.5, "nearest": False, "cutoff": 0.0},
+        ),
+        (
+            ["--resolution", "0.05", "--risk", "inflation"],
+            {"name": "inflation", "cost_scaling_factor": 10.0, "inflation_radius": 0.55},
+        ),
+    ],
+)
+def test_plan_takes_a_risk_and_files_say_which(tmp_path, free_map, options, stated):
+    done = run("plan", free_map, "--start", "0,0", "--goal", "5,3", "--algorithm", "exact", "-o", tmp_path / "out", *options)
+    assert done.returncode == 0, done.stderr
+    document = json.loads((tmp_path / "out" / "paths.json").read_text())
+    assert document["settings"]["objectives"] == [{"name": "length"}, stated]
+
+
+def test_plan_says_that_a_front_is_one_point(tmp_path, free_map):
+    query = ("plan", free_map, "--start", "0,0", "--goal", "5,0", "--algorithm", "exact", "-o", tmp_path / "out")
+    done = run(*query, "--resolution", "0.05", "--risk", "paper")
+    said = "the front found is one point, a path that is best by every objective; a wider risk, such as variance=2 or"
+    assert done.stderr.count(said) == 1 and f"NOTE: {said}" in done.stdout
 
 
 @pytest.mark.parametrize("algorithm", ["spea2", "moea/d", "NSGA-III"])
@@ -200,7 +237,7 @@ def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
     query = ["plan", str(path), "--start", "5,10", "--goal", "7,12", "-o", str(tmp_path / "out")]
     assert main([*query, "--axis", "x", "--algorithm", "exact"]) == 0
     captured = capsys.readouterr()
-    assert "NOTE: the shortest path found is" in captured.out
+    assert captured.out.count("NOTE: ") == 1 and "; the shortest path found is" in captured.out
     assert len([line for line in captured.err.splitlines() if "longer than the shortest of all; try the" in line]) == 1
     assert main([*query, "--representation", "cells", "--algorithm", "exact"]) == 0
     captured = capsys.readouterr()
@@ -234,7 +271,14 @@ def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "there is no representation 'real'"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "cells", "--axis", "y"], "advance along none"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--objectives", "lenght"], "did you mean 'length'"),
-        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "robot's radius of 5 m"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--resolution", "1", "--radius", "5"], "robot's radius of 5 m"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "5"], "is in cells, and a radius in metres needs"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--risk", "robot"], "in cells, and --risk robot needs their size"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--sigma-m", "1"], "in cells, and --sigma-m 1 needs their size"),
+        (["plan", "office", "--sigma-m", "0"], "sigma_m of the potential is 0.0, expected a positive number of metres"),
+        (["plan", "office", "--sigma-m", "1", "--risk", "paper"], "--sigma-m is for the robot's risk, not for --risk paper"),
+        (["plan", "office", "--objectives", "length,turn", "--risk", "paper"], "--risk is for the objective vulnerability"),
+        (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--units", "m"], "is in cells, and --units m needs their size"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--radius", "-1"], "robot radius is -1"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "0"], "'0' is not a whole number, one or more"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--pop-size", "ten"], "'ten' is not a whole number"),
@@ -368,6 +412,9 @@ def test_info_describes_a_file(free_map, capsys):
     assert main(["info", str(free_map), "--resolution", "0.5"]) == 0
     out = capsys.readouterr().out
     assert "6 x 4 cells, 3 x 2 m" in out and "2 cells, 8.3%" in out and "0.5 m a cell" in out
+    assert main(["info", str(free_map)]) == 0
+    out = capsys.readouterr().out
+    assert "6 x 4 cells\n" in out and "not stated: a map in cells; --resolution M" in out and "origin" not in out
     assert main(["info", "office"]) == 0
     assert "query" in capsys.readouterr().out
 

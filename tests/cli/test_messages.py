@@ -18,7 +18,7 @@ from pymoo_gridpath.study.planning.expand import plan_study
 # Clears the screen, rings, and turns the writing around.
 TERMINAL = "a\x1b[2J\x07\u202eb"
 SHOWN = "a\\x1b[2J\\x07\\u202eb"
-ROOM = "......\n..##..\n......\n......\n"
+ROOM = "resolution: 1\n......\n..##..\n......\n......\n"
 FAST = ["--start", "0,0", "--goal", "5,3", "--pop-size", "10", "--generations", "2"]
 
 

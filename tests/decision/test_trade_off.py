@@ -18,7 +18,7 @@ from pymoo_gridpath.objectives import Objective, Vulnerability
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.testing import reference
 
-MEASURES = ["length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance"]
+MEASURES = ["length", "vulnerability", "turn", "interfering_cells", "clearance"]
 
 # -- what is kept -----------------------------------------------------------------------------------------------------
 
@@ -75,7 +75,11 @@ def test_measures_agree_with_the_definitions(trade_off):
 def test_metres_follow_resolution_and_origin():
     grid = make_problem().grid.replace(resolution=0.25, origin=(-3.0, 2.0))
     problem = GridPathProblem(grid, (0, 0), (7, 7))
-    record = TradeOffSet.from_genes(problem, draw(problem)).shortest
+    found = TradeOffSet.from_genes(problem, draw(problem))
+    record = found.shortest
+    assert list(found.measures)[:2] == ["length", "length_m"]
+    in_cells = TradeOffSet.from_genes(make_problem(), draw(problem))[0]
+    assert in_cells.length_m is None and in_cells.points is None and " m" not in in_cells._repr_html_()
     assert record.length_m == pytest.approx(0.25 * record.length)
     assert record.points[0] == pytest.approx([-2.875, 2.125])
     assert np.allclose(record.points, (record.cells + 0.5) * 0.25 + [-3.0, 2.0])

@@ -254,7 +254,7 @@ def test_the_waypoints_of_a_path_are_saved(open_page):
 
 
 def test_a_map_in_cells_gives_cells(open_page):
-    found = exact_set(resolution=1.0)
+    found = exact_set(resolution=None)
     page = open_page(found)
     lines = page.run("waypoints(0)").splitlines()
     assert lines[0] == "cell_x,cell_y" and [[*map(int, line.split(","))] for line in lines[1:]] == found[0].cells.tolist()

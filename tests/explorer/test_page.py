@@ -102,7 +102,7 @@ def test_the_page_holds_the_map(tmp_path):
 
 
 def test_a_map_in_cells_has_no_metres(tmp_path):
-    data = page_of(exact_set(resolution=1.0), tmp_path).data
+    data = page_of(exact_set(resolution=None), tmp_path).data
     assert data["map"]["resolution"] is None
     assert data["columns"][0]["unit"] == "cells" and " m" not in data["summary"]
 

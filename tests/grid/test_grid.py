@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError
-from pymoo_gridpath.grid import OccupancyGrid, inflation
+from pymoo_gridpath.grid import Box, OccupancyGrid, inflation
 from pymoo_gridpath.grid.inflation import disc_of
 
 
@@ -35,6 +35,7 @@ def random_grid(seed, shape=(7, 9), density=0.35, corner_cutting=False):
         ({"occupied": [[0]], "origin": (1,)}, "origin is"),
         ({"occupied": [[0]], "origin": (0, math.inf, 0)}, "origin is"),
         ({"occupied": [[0]], "origin": "here"}, "origin is"),
+        ({"occupied": [[0]], "origin": (0, 0, 1)}, r"origin is \(0, 0, 1\), in metres, and no resolution is given"),
     ],
 )
 def test_bad_arguments_are_refused_in_words(arguments, message):
@@ -54,11 +55,13 @@ def test_grid_is_immutable_and_owns_its_array():
 
 
 @pytest.mark.parametrize("clone", [copy.deepcopy, copy.copy, lambda g: pickle.loads(pickle.dumps(g))])
-def test_copies_are_equal_and_still_immutable(clone):
-    grid = OccupancyGrid([[0, 1]], 0.5, (1, 2, 0.3), True, "a")
+@pytest.mark.parametrize("place", [(0.5, (1, 2, 0.3)), (None, (0, 0))])
+def test_copies_are_equal_and_still_immutable(clone, place):
+    grid = OccupancyGrid([[0, 1]], *place, True, "a")
     other = clone(grid)
     assert other == grid and hash(other) == hash(grid)
     assert not other.occupied.flags.writeable
+    assert other.resolution == place[0] and other != grid.replace(resolution=7.0)
     assert other != grid.replace(name="b") and other != grid.replace(occupied=[[1, 1]])
 
 
@@ -166,6 +169,34 @@ def test_inflation_occupies_what_a_disc_would_touch(seed, radius, resolution):
     assert inflated.resolution == grid.resolution and inflated.name == grid.name
 
 
+NEED_METRES = {
+    "to_metres": lambda grid: grid.to_metres((0, 0)),
+    "to_cells": lambda grid: grid.to_cells((0.5, 0.5)),
+    "inflate": lambda grid: grid.inflate(0.3),
+    "radius_in_cells": lambda grid: grid.radius_in_cells(0.3),
+    "check_resolution": lambda grid: grid.check_resolution("a test"),
+}
+
+
+@pytest.mark.parametrize("call", NEED_METRES.values(), ids=NEED_METRES)
+def test_a_map_in_cells_has_no_metres(call):
+    grid = OccupancyGrid(np.zeros((4, 6)), name="field")
+    said = "^the grid 'field' is in cells, and .* needs their size; expected a map that states its resolution, or one given in"
+    with pytest.raises(GridError, match=said):
+        call(grid)
+    call(grid.replace(resolution=0.25))
+
+
+def test_a_map_in_cells_stays_one():
+    grid = OccupancyGrid(np.eye(6), name="field")
+    stated = grid.replace(resolution=0.5, origin=(1, 2))
+    for made in (grid, grid.crop(Box(1, 1, 4, 3)), grid.downsample(2), grid.grow(1.0), grid.inflate(0.0)):
+        assert made.resolution is None and made.origin == (0.0, 0.0, 0.0)
+    assert "m," not in repr(grid) and "of 0.5 m" in repr(stated)
+    assert (grid.digest, grid.radius_in_cells(0)) == (stated.digest, 0.0)
+    assert OccupancyGrid.from_occupancy([[0, 100]]).resolution is None
+
+
 @pytest.mark.parametrize("radius", [0.6, 1.0, 3.7, 9.4])
 def test_both_ways_to_grow_obstacles_agree(radius):
     for seed in range(5):
@@ -203,7 +234,7 @@ def test_read_only_cells_are_shared_and_all_others_copied():
     kept = cells.copy()
     kept.flags.writeable = False
     assert OccupancyGrid(kept).occupied is kept and OccupancyGrid(kept, unknown=kept).unknown is kept
-    for changed in (grid.replace(name="b"), grid.inflate(1.0), grid.replace(occupied=kept)):
+    for changed in (grid.replace(name="b"), grid.grow(1.0), grid.replace(occupied=kept)):
         assert changed.unknown is grid.unknown
     assert grid.replace(corner_cutting=True).occupied is grid.occupied
     # Whoever made the array behind a view may write into it, and numbers are no booleans.
@@ -222,9 +253,9 @@ def test_unknown_cells_stay_with_the_grid_and_make_no_other_grid():
     plain = OccupancyGrid([[0, 1, 0], [0, 0, 0]])
     unknown[:] = True
     expected = [[False, True, True], [False, False, False]]
-    for copied in (grid, grid.inflate(1), grid.replace(name="b"), pickle.loads(pickle.dumps(grid)), copy.deepcopy(grid)):
+    for copied in (grid, grid.grow(1), grid.replace(name="b"), pickle.loads(pickle.dumps(grid)), copy.deepcopy(grid)):
         assert copied.unknown.tolist() == expected and not copied.unknown.flags.writeable
-    assert plain.unknown is None and plain.inflate(1).unknown is None and pickle.loads(pickle.dumps(plain)).unknown is None
+    assert plain.unknown is None and plain.grow(1).unknown is None and pickle.loads(pickle.dumps(plain)).unknown is None
     assert grid == plain and hash(grid) == hash(plain)
     assert grid.replace(occupied=[[0, 1]]).unknown is None
     with pytest.raises(GridError, match=r"unknown has the shape \(1, 2\), expected that of the grid, \(2, 3\)"):

@@ -54,6 +54,10 @@ def test_common_options(write, kind):
     if kind != "yaml":
         grid = load_map(path, resolution=0.5, origin=(1, 2), unknown=None)
         assert (grid.resolution, grid.origin) == (0.5, (1.0, 2.0, 0.0))
+        assert load_map(path).resolution == (1.0 if kind == "txt" else None), "only what the file or the caller states"
+        if kind != "txt":
+            with pytest.raises(MapError, match=r"origin is \(1, 2\), in metres, and no resolution is given"):
+                load_map(path, origin=(1, 2))
 
 
 @pytest.mark.parametrize("kind", ["yaml", "pgm"])

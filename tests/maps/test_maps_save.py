@@ -17,15 +17,16 @@ numbers = st.floats(-1e6, 1e6).filter(lambda value: value == 0 or abs(value) > 1
 
 
 @st.composite
-def grids(draw):
+def grids(draw, metres=False):
     shape = draw(st.integers(1, 9)), draw(st.integers(1, 9))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     occupied = rng.random(shape) < 0.4
     unknown = draw(st.sampled_from([None, occupied & (rng.random(shape) < 0.5)]))
+    in_metres = metres or draw(st.booleans())
     return OccupancyGrid(
         occupied,
-        resolution=draw(st.floats(1e-6, 1e6)),
-        origin=(draw(numbers), draw(numbers), draw(st.floats(-4, 4))),
+        resolution=draw(st.floats(1e-6, 1e6)) if in_metres else None,
+        origin=(draw(numbers), draw(numbers), draw(st.floats(-4, 4))) if in_metres else (0, 0),
         corner_cutting=draw(st.sampled_from([False, True, "one side"])),
         name=draw(st.sampled_from(["grid", "a b", "K\u00f6ln: 1", "'\"", "1e-5"])),
         unknown=unknown,
@@ -36,7 +37,13 @@ def grids(draw):
 @settings(max_examples=60)
 @given(grids(), st.sampled_from([".yaml", ".yml", ".txt", ".map", ".npy"]))
 def test_what_is_written_is_read_back(tmp_path_factory, grid, suffix):
-    path = save_map(grid, tmp_path_factory.mktemp("maps") / ("m\u00e4p 1" + suffix))
+    file = tmp_path_factory.mktemp("maps") / ("m\u00e4p 1" + suffix)
+    if grid.resolution is None and suffix in (".yaml", ".yml"):
+        with pytest.raises(MapError, match="in cells, expected one with a resolution, which a ROS map states"):
+            save_map(grid, file)
+        assert not list(file.parent.iterdir())
+        return
+    path = save_map(grid, file)
     same = load_map(path)
     assert np.array_equal(same.occupied, grid.occupied)
     if suffix in (".yaml", ".yml", ".txt"):
@@ -51,7 +58,7 @@ def test_what_is_written_is_read_back(tmp_path_factory, grid, suffix):
 
 
 @settings(max_examples=30)
-@given(grids())
+@given(grids(metres=True))
 def test_others_read_what_is_written_for_ros(tmp_path_factory, grid):
     """PyYAML, which map servers of ROS 1 use, and Pillow."""
     path = save_map(grid, tmp_path_factory.mktemp("maps") / "map.yaml")

@@ -21,7 +21,7 @@ ROWS = "#..\n.@.\n"
 def test_the_first_row_is_the_top_one(write):
     grid = read_text(write("m.txt", "#X@1.\n.0000\n"))
     assert grid.occupied.astype(int).tolist() == [[0, 0, 0, 0, 0], [1, 1, 1, 1, 0]]
-    assert (grid.name, grid.resolution, grid.origin, grid.corner_cutting) == ("m", 1.0, (0.0, 0.0, 0.0), False)
+    assert (grid.name, grid.resolution, grid.origin, grid.corner_cutting) == ("m", None, (0.0, 0.0, 0.0), False)
 
 
 def test_the_header_describes_the_grid_and_a_query(write):

@@ -42,6 +42,9 @@ class TestSweep(PlannerSuite):
 
 
 def plan(grid, start, goal, **arguments):
+    if grid.resolution is None:
+        # Radii are in metres, here those of cells of one.
+        grid = grid.replace(resolution=1.0)
     problem = GridPathProblem(grid, start, goal, CellSequence(grid, start, goal, max_cells=grid.occupied.size))
     planner = RegionOfSight(**arguments)
     return problem, planner.plan(problem), planner.found

@@ -139,6 +139,8 @@ def test_waypoints_are_in_cells_and_in_metres():
     grid = OccupancyGrid(np.zeros((5, 5)), resolution=0.5, origin=(10.0, -2.0, 0.0))
     waypoints = Waypoints.of(grid, np.array([[0, 0], [3, 4], [4, 4]]))
     assert waypoints.length == 6.0 and waypoints.length_m == 3.0
+    in_cells = Waypoints.of(OccupancyGrid(np.zeros((5, 5))), waypoints.cells)
+    assert in_cells.metres is None and in_cells.length_m is None and in_cells.length == 6.0
     assert waypoints.metres.tolist() == [[10.25, -1.75], [11.75, 0.25], [12.25, 0.25]]
 
 

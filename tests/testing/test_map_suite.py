@@ -101,7 +101,7 @@ class Runs(MapFormat):
     def matches(self, head, path):
         return head.startswith(self.title.encode() + b"\n")
 
-    def read(self, path, corner_cutting=False, resolution=1.0):
+    def read(self, path, corner_cutting=False, resolution=None):
         _, rows = self._parsed(path)
         widths = {sum(row) for row in rows}
         if len(widths) != 1 or min(map(min, rows)) < 0:
@@ -146,46 +146,46 @@ class TestRuns(MapFormatSuite):
         self.write(path, grid, " ".join(map(str, (*query.start, *query.goal, int(query.radius * 100)))))
 
 
-def _flipped(self, path, corner_cutting=False, resolution=1.0):
+def _flipped(self, path, corner_cutting=False, resolution=None):
     grid = Runs().read(path, corner_cutting, resolution)
     return grid.replace(occupied=grid.occupied[::-1])
 
 
-def _mirrored(self, path, corner_cutting=False, resolution=1.0):
+def _mirrored(self, path, corner_cutting=False, resolution=None):
     grid = Runs().read(path, corner_cutting, resolution)
     return grid.replace(occupied=grid.occupied[:, ::-1])
 
 
-def _without_options(self, path, corner_cutting=False, resolution=1.0):
+def _without_options(self, path, corner_cutting=False, resolution=None):
     return Runs().read(path)
 
 
-def _of_any_resolution(self, path, corner_cutting=False, resolution=1.0):
-    return Runs().read(path, corner_cutting, float("nan") if resolution == "nonsense" else resolution).replace(resolution=1.0)
+def _of_any_resolution(self, path, corner_cutting=False, resolution=None):
+    return Runs().read(path, corner_cutting, float("nan") if resolution == "nonsense" else resolution).replace(resolution=None)
 
 
-def _with_tracebacks(self, path, corner_cutting=False, resolution=1.0):
+def _with_tracebacks(self, path, corner_cutting=False, resolution=None):
     try:
         return Runs().read(path, corner_cutting, resolution)
     except MapError as error:
         raise KeyError(error.message) from None
 
 
-def _of_another_file(self, path, corner_cutting=False, resolution=1.0):
+def _of_another_file(self, path, corner_cutting=False, resolution=None):
     try:
         return Runs().read(path, corner_cutting, resolution)
     except MapError as error:
         raise MapError("map", error.message) from None
 
 
-def _of_anything(self, path, corner_cutting=False, resolution=1.0):
+def _of_anything(self, path, corner_cutting=False, resolution=None):
     try:
         return Runs().read(path, corner_cutting, resolution)
     except MapError:
         return make_grid(path, [[0]])
 
 
-def _of_any_size(self, path, corner_cutting=False, resolution=1.0):
+def _of_any_size(self, path, corner_cutting=False, resolution=None):
     _, rows = self._parsed(path)
     if len({sum(row) for row in rows}) != 1 or min(map(min, rows)) < 0:
         raise MapError(path, "found rows of several widths, expected one")
@@ -193,13 +193,13 @@ def _of_any_size(self, path, corner_cutting=False, resolution=1.0):
     return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution)
 
 
-def _with_a_cache(self, path, corner_cutting=False, resolution=1.0):
+def _with_a_cache(self, path, corner_cutting=False, resolution=None):
     grid = Runs().read(path, corner_cutting, resolution)
     np.save(f"{path}.npy", grid.occupied)
     return grid
 
 
-def _with_random_numbers(self, path, corner_cutting=False, resolution=1.0):
+def _with_random_numbers(self, path, corner_cutting=False, resolution=None):
     np.random.random()  # noqa: NPY002
     return Runs().read(path, corner_cutting, resolution)
 

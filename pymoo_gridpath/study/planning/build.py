@@ -39,13 +39,15 @@ def pack_grid(grid: OccupancyGrid) -> tuple[dict[str, Any], bytes]:
     Returns
     -------
     dict
-        ``digest`` (see `OccupancyGrid.digest`), ``width``, ``height``, ``corner_cutting``, and ``moves`` if these are not 8;
-        names, poses and the resolution change no result, since measures are in cells.
+        ``digest`` (see `OccupancyGrid.digest`), ``width``, ``height``, ``corner_cutting``, ``moves`` if these are not 8, and
+        ``resolution`` if the map states it; names and poses change no result.
     bytes
         The cells, eight a byte, compressed.
     """
     spec = {"digest": grid.digest, "width": grid.width, "height": grid.height}
     spec |= settled_steps(grid.corner_cutting, grid.moves)
+    if grid.resolution is not None:
+        spec["resolution"] = grid.resolution
     return spec, zlib.compress(np.packbits(grid.occupied).tobytes())
 
 
@@ -72,7 +74,7 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
     packed = np.frombuffer(zlib.decompress(cells), dtype=np.uint8)
     shape = spec["height"], spec["width"]
     occupied = np.unpackbits(packed, count=shape[0] * shape[1]).reshape(shape).astype(bool)
-    grid = OccupancyGrid(occupied, **steps_of(spec))
+    grid = OccupancyGrid(occupied, spec.get("resolution"), **steps_of(spec))
     if grid.digest != spec["digest"]:
         raise GridPathError("the cells of the map are not those that were planned with")
     return grid

@@ -189,8 +189,10 @@ def _check_grid(value: Any, where: Where) -> tuple[int, int]:
         values.whole(family["seed"], (*place, "seed"), 0, values.MAX_SEED)
         _at(place, make_spec, RandomFamily, {key: value for key, value in family.items() if key != "seed"}, ())
         return family["size"], family["size"]
-    grid = _table(value, ("digest", "width", "height", "corner_cutting"), where, "the grid", ("moves",))
+    grid = _table(value, ("digest", "width", "height", "corner_cutting"), where, "the grid", ("moves", "resolution"))
     _check_texts(grid, ("digest",), where)
+    if "resolution" in grid:
+        values.real(grid["resolution"], (*where, "resolution"), open_below=True)
     values.corner_cutting(grid["corner_cutting"], (*where, "corner_cutting"))
     values.moves(steps_of(grid)["moves"], (*where, "moves"))
     return values.whole(grid["width"], (*where, "width"), 1), values.whole(grid["height"], (*where, "height"), 1)

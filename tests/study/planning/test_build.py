@@ -55,14 +55,16 @@ def same(one, other) -> bool:
 @settings(max_examples=50, deadline=None)
 @given(
     occupied=arrays(bool, st.tuples(st.integers(1, 12), st.integers(1, 12))),
-    resolution=st.floats(0.01, 10),
+    resolution=st.none() | st.floats(0.01, 10),
     steps=st.sampled_from(RULES),
 )
 def test_grids_pack_and_build(occupied, resolution, steps):
-    grid = OccupancyGrid(occupied, resolution, (1, 2, 3), name="a name", **steps)
+    grid = OccupancyGrid(occupied, resolution, (0, 0) if resolution is None else (1, 2, 3), name="a name", **steps)
     spec, cells = pack_grid(grid)
-    assert build_grid(json.loads(json.dumps(spec)), cells) == grid.replace(resolution=1.0, origin=(0, 0, 0), name="grid")
-    assert pack_grid(grid.replace(name="another", resolution=2.0, origin=(0, 0)))[0] == spec
+    assert build_grid(json.loads(json.dumps(spec)), cells) == grid.replace(origin=(0, 0, 0), name="grid")
+    assert pack_grid(grid.replace(name="another", origin=(0, 0)))[0] == spec
+    assert ("resolution" in spec) == (resolution is not None)
+    assert pack_grid(grid.replace(resolution=20.0))[0] == {**spec, "resolution": 20.0}
 
 
 @settings(max_examples=50, deadline=None)

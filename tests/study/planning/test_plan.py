@@ -200,7 +200,7 @@ def test_the_plan_says_where_maps_come_from(arena):
         ("{ first = 6 }", "", "", 6, "queries go up to 6"),
         ("{ first = 3, last = 1 }", "", "", 6, "before first"),
         ("", "start = [0, 0]", "", 7, "start comes from the scen file"),
-        ("", "radius = 0.6", "", 7, "query 0: with obstacles grown"),
+        ("", "radius = 0.6\nresolution = 1", "", 7, "query 0: with obstacles grown"),
         ("", 'representation = "integer"', "", 4, "problem 'arena/1': "),
         ("", "", 'representation = "integer"', 8, "problem 'arena/1': "),
     ],
@@ -489,4 +489,4 @@ def test_every_usable_algorithm_can_be_studied(name):
 def test_what_was_stored_is_looked_for_among_what_has_a_name():
     """A coding or an objective that is made for one problem, such as paths in time, is none that a study names."""
     assert set(of_package(Representation)) == {"integer", "binary", "mixed", "absolute", "cells"}
-    assert set(of_package(Objective)) == {"length", "vulnerability", "turn"}
+    assert set(of_package(Objective)) == {"length", "vulnerability", "turn", "inflation"}
