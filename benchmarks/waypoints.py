@@ -52,7 +52,7 @@ def along(points: np.ndarray, shares: np.ndarray) -> np.ndarray:
     return np.stack([np.interp(shares * length[-1], length, points[:, axis]) for axis in (0, 1)], axis=1)
 
 
-def to_spare(cells: np.ndarray, corners: np.ndarray, obstacles: Obstacles, tolerance: float) -> float:
+def to_spare(cells: np.ndarray, corners: np.ndarray, obstacles: Obstacles, robot: float) -> float:
     """Return by how many cells the line is clearer than promised, at the least."""
     places = {tuple(cell): k for k, cell in enumerate(cells.tolist())}
     least = np.inf
@@ -61,7 +61,9 @@ def to_spare(cells: np.ndarray, corners: np.ndarray, obstacles: Obstacles, toler
         length = np.hypot(*np.diff(stretch, axis=0).T).sum()
         shares = np.linspace(0.0, 1.0, int(np.ceil(POINTS_A_CELL * length)) + 1)
         line = obstacles.distances(along(stretch[[0, -1]], shares))
-        least = min(least, float((line - obstacles.distances(along(stretch, shares))).min()) + tolerance)
+        path = obstacles.distances(along(stretch, shares))
+        # Half a cell nearer than the path, and a 32nd of one nearer than the robot is wide.
+        least = min(least, float((line - np.maximum(path - 0.5, np.minimum(path, robot) - 1 / 32)).min()))
     return least
 
 
@@ -108,7 +110,9 @@ def main(argv: list[str] | None = None) -> int:
             before = time.process_time()
             made = record.waypoints()
             seconds += time.process_time() - before
-            worst = min(worst, to_spare(record.cells, made.cells, trees[key[0]], 0.5))
+            worst = min(
+                worst, to_spare(record.cells, made.cells, trees[key[0]], key[1] / maps[key[0]].check_resolution("a radius"))
+            )
             path = Waypoints(grid, record.cells)
             longer = max(longer, made.length - path.length)
             for one in (path, made):

@@ -23,9 +23,6 @@ _IN_METRES = ("yaml", "f1tenth")
 
 DEFAULT_SPEED = 1.0
 
-# In cells.
-_ROUNDING = 1e-9
-
 
 def add_waypoint_options(plan: argparse.ArgumentParser) -> None:
     """Add the options of files of waypoints."""
@@ -89,11 +86,6 @@ def write_waypoints(trade_off, arguments) -> None:
     for index, names in paths.items():
         made = trade_off[index].waypoints(spacing=arguments.spacing)
         print(f"waypoints of the {', '.join(names)} path: {made}")
-        if made.clearance.least < min(made.before.clearance.least, -_ROUNDING):
-            say(
-                f"the line of the {', '.join(names)} path comes nearer to an obstacle than the robot is wide, by "
-                f"{-made.clearance.least:.2g} cells; a little more --radius rules that out"
-            )
         for name in names:
             for one in arguments.waypoints:
                 file_name, write = _FORMATS[one]

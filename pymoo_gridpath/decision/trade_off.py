@@ -106,15 +106,16 @@ class PathRecord:
         Each sees the next, as with the planners that go by line of sight, and the line is as clear of obstacles as the path was
         there: at each share of a piece's length it is at most ``tolerance`` nearer to an obstacle than the path at the same
         share of the stretch that the piece replaces. Safe detours stay detours so, which they would not if only the least
-        clearance of the whole path had to be kept. Distances are from the sides of the obstacles before they grew by the
-        robot's radius, of all points of the line and not of some. From each waypoint the next is the last of the path for which
-        that holds; a step between neighbouring cells of the path always may be taken.
+        clearance of the whole path had to be kept. Nor does the line come nearer than the robot's radius, by more than a 32nd
+        of a cell, unless the path does. Distances are from the sides of the obstacles before they grew by that radius, of all
+        points of the line and not of some. From each waypoint the next is the last of the path for which that holds; a step
+        between neighbouring cells of the path always may be taken.
 
         Parameters
         ----------
         tolerance : float, optional
             In metres, or in cells on a map that has no metres; half a cell by default, since centres of cells stand for points
-            half a cell around. Infinity asks for lines of sight alone. Below a 256th of a cell only steps in line are joined.
+            half a cell around. Infinity asks for lines of sight alone. Below a 64th of a cell only steps in line are joined.
         spacing : float, optional
             Put points between, none further from the next, in the same unit. The corners stay.
 

@@ -27,14 +27,18 @@ _ROUNDING = 1e-9
 _LEAST_GAIN = 0.1
 
 # What a line has to spare must be more, in cells, so that few points of it tell.
-_LEAST_SPARE = 1.0 / 256.0
+_LEAST_SPARE = 1.0 / 64.0
+
+# So much nearer than the robot is wide a line may come, in cells, where the path just passes: else stairs would be left there.
+_GRAZE = 1.0 / 32.0
 
 
 class Promise(NamedTuple):
     """How clear of obstacles a line must be that replaces a stretch of a path.
 
     Each point of the line, at some share of its length, shall be at most ``tolerance`` nearer to an obstacle than the path is
-    at the same share of the stretch. A stretch that is straight already is kept as it is.
+    at the same share of the stretch, and no nearer than the robot is wide, by more than a 32nd of a cell, unless the path is. A
+    stretch that is straight already is kept as it is.
 
     Attributes
     ----------
@@ -44,8 +48,8 @@ class Promise(NamedTuple):
         The path's cells, counted as in those arrays.
     along : numpy.ndarray of float, shape (n,)
         The length of the path up to each.
-    tolerance : float
-        In cells.
+    tolerance, robot : float
+        The tolerance, and the radius of the robot from whose centre distances are, in cells.
     """
 
     above: np.ndarray
@@ -54,18 +58,19 @@ class Promise(NamedTuple):
     y: np.ndarray
     along: np.ndarray
     tolerance: float
+    robot: float
 
     @classmethod
-    def of(cls, nearest: Nearest, cells: np.ndarray, tolerance: float) -> Promise:
+    def of(cls, nearest: Nearest, cells: np.ndarray, tolerance: float, robot: float) -> Promise:
         """Return the promise for a path of cells (x, y), shape (n, 2)."""
         x, y = np.ascontiguousarray((cells - nearest.corner).T, dtype=float)
         along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
-        return cls(nearest.above, nearest.below, x, y, along, float(tolerance))
+        return cls(nearest.above, nearest.below, x, y, along, float(tolerance), float(robot))
 
 
 # Planners ask of a line no more than that it is one of sight.
 _NO_CELLS, _NO_ROWS = np.empty(0), np.empty((0, 0), dtype=np.int32)
-_NO_PROMISE = Promise(_NO_ROWS, _NO_ROWS, _NO_CELLS, _NO_CELLS, _NO_CELLS, np.inf)
+_NO_PROMISE = Promise(_NO_ROWS, _NO_ROWS, _NO_CELLS, _NO_CELLS, _NO_CELLS, np.inf, 0.0)
 
 
 def path_length(moves: Moves, path: np.ndarray) -> float:
@@ -317,7 +322,7 @@ def _to_spare(promise, i, j, share):
     part = (at - along[low]) / (along[high] - along[low])
     before = distance(promise.above, promise.below, x[low] + part * (x[high] - x[low]), y[low] + part * (y[high] - y[low]))
     after = distance(promise.above, promise.below, x[i] + share * (x[j] - x[i]), y[i] + share * (y[j] - y[i]))
-    return after - before + promise.tolerance
+    return after - max(before - promise.tolerance, min(before, promise.robot) - _GRAZE)
 
 
 @kernel

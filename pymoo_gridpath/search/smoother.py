@@ -60,7 +60,7 @@ class Smoother:
             if tolerance is not None:
                 raise GridPathError("tolerance is not for a path in time, whose waypoints are its cells at each tick")
             return np.arange(len(cells))
-        promise = Promise.of(self._nearest, cells, self._in_cells(tolerance))
+        promise = Promise.of(self._nearest, cells, self._in_cells(tolerance), self.grid.growth)
         corner = self._moves.box.x0, self._moves.box.y0
         path = (cells - corner) @ np.array([1, self._moves.width])
         return places_of_farthest(self._moves, path.astype(np.int64), False, promise)
