@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath.decision.drawn import drawn_box, drawn_field
-from pymoo_gridpath.decision.export import shown_measures
+from pymoo_gridpath.decision.export import place_in_words, shown_measures
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.objectives import axis_of
@@ -169,8 +169,8 @@ def _summary(trade_off, box: Box, resolution: float | None) -> str:
         size += f" of {resolution:g} m"
     if box != whole.whole:
         size += f", of which {box.x1 - box.x0} x {box.y1 - box.y0} are shown"
-    ends = f"from cell {problem.start[0]}, {problem.start[1]} to {problem.goal[0]}, {problem.goal[1]}"
-    return f"{counted(len(trade_off), 'trade-off path')} {ends}; {size}"
+    ends = " to ".join(place_in_words(whole, end) for end in (problem.start, problem.goal))
+    return f"{counted(len(trade_off), 'trade-off path')} from {ends}; {size}"
 
 
 def _columns(trade_off) -> list[dict]:
