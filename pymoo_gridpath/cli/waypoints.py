@@ -35,7 +35,12 @@ def add_waypoint_options(plan: argparse.ArgumentParser) -> None:
         help="write the waypoints of each named path as x,y,yaw (csv), as nav_msgs/Path of ROS 2 (yaml), or as a racing line "
         "(f1tenth)",
     )
-    group.add_argument("--spacing", type=above_zero, metavar="M", help="put waypoints so near to each other, in metres")
+    group.add_argument(
+        "--spacing",
+        type=above_zero,
+        metavar="M",
+        help="put waypoints so near to each other, in metres; in cells if the map has none",
+    )
     group.add_argument(
         "--speed", type=above_zero, metavar="V", help=f"metres per second of racing lines (default: {DEFAULT_SPEED:g})"
     )
@@ -56,13 +61,19 @@ def check_waypoint_options(arguments, grid: OccupancyGrid) -> None:
         raise GridPathError("--spacing is for --waypoints, expected some of " + ", ".join(_FORMATS))
     if arguments.speed is not None and "f1tenth" not in arguments.waypoints:
         raise GridPathError("--speed is for --waypoints f1tenth, expected it among the formats")
-    wanted = [one for one in arguments.waypoints if one in _IN_METRES]
-    if wanted and grid.resolution is None:
-        raise GridPathError(f"--waypoints {wanted[0]} is in metres, and the map has none, expected --resolution")
+    for one in arguments.waypoints:
+        if one in _IN_METRES:
+            grid.check_resolution(f"--waypoints {one}")
 
 
 def write_waypoints(trade_off, arguments) -> None:
     """Write the waypoints of the named paths, and say of each how they compare with the path."""
+    from pymoo_gridpath.decision import NAMES
+
+    for pattern, _ in _FORMATS.values():
+        # Those of an earlier plan would be taken for this one's.
+        for name in {*NAMES, *trade_off.named}:
+            (arguments.output / pattern.format(name)).unlink(missing_ok=True)
     if not arguments.waypoints:
         return
     if not trade_off.feasible:

@@ -91,9 +91,9 @@ class Waypoints:
         return float(np.hypot(*np.diff(self.cells, axis=0).T).sum())
 
     @property
-    def length_m(self) -> float:
-        """Euclidean length in metres."""
-        return self.length * metres_of(self.grid)
+    def length_m(self) -> float | None:
+        """Euclidean length in metres, None on a map in cells."""
+        return None if self.grid.resolution is None else self.length * self.grid.resolution
 
     @property
     def yaw(self) -> np.ndarray:
@@ -116,7 +116,7 @@ class Waypoints:
 
     @property
     def curvature(self) -> tuple[float, float]:
-        """Greatest and mean curvature, 1 / m.
+        """Greatest and mean curvature, 1 / m; one by cells on a map in cells.
 
         A polyline has none of its own: it is 0 along a piece and infinite at a corner. So the line is cut into pieces of one
         cell, as near as their number allows, and the curvature is Menger's, that of the circle through three of their ends.
@@ -137,10 +137,10 @@ class Waypoints:
         return Clearance(self._nearest.least(self.cells) - radius, self._nearest.mean(self.cells) - radius)
 
     @property
-    def clearance_m(self) -> Clearance:
-        """The same in metres."""
-        metres = metres_of(self.grid)
-        return Clearance(self.clearance.least * metres, self.clearance.mean * metres)
+    def clearance_m(self) -> Clearance | None:
+        """The same in metres, None on a map in cells."""
+        metres = self.grid.resolution
+        return None if metres is None else Clearance(self.clearance.least * metres, self.clearance.mean * metres)
 
     @functools.cached_property
     def _nearest(self) -> Nearest:
@@ -151,20 +151,14 @@ class Waypoints:
 
     def __str__(self) -> str:
         """Return what they measure in words, after what the path did."""
-        has_metres = self.grid.resolution is not None
-        unit = "m" if has_metres else "cells"
+        unit, metres = "cells" if self.grid.resolution is None else "m", metres_of(self.grid)
         lines = [self] if self.before is None else [self.before, self]
-        length, turn, (least, mean) = (
-            [one.length_m if has_metres else one.length for one in lines],
-            [one.turn for one in lines],
-            zip(*(one.clearance_m if has_metres else one.clearance for one in lines), strict=True),
-        )
         said = {
             "points": [f"{len(one)}" for one in lines],
-            "length": [f"{value:.2f}" for value in length],
-            "turn": [f"{value:.0f}" for value in turn],
-            "least clearance": [f"{value:.3f}" for value in least],
-            "mean": [f"{value:.3f}" for value in mean],
+            "length": [f"{one.length * metres:.2f}" for one in lines],
+            "turn": [f"{one.turn:.0f}" for one in lines],
+            "least clearance": [f"{one.clearance.least * metres:.3f}" for one in lines],
+            "mean": [f"{one.clearance.mean * metres:.3f}" for one in lines],
         }
         units = {"points": "", "length": f" {unit}", "turn": " degrees"}
         return ", ".join(f"{key} {' to '.join(values)}{units.get(key, f' {unit}')}" for key, values in said.items())
@@ -221,8 +215,8 @@ class Waypoints:
         GridPathError
             If the map has no metres, the frame is no text, or the file cannot be written.
         """
-        self._check_metres("nav_msgs/Path")
-        text = waypoint_files.nav_path_text(self.points, self.yaw, checks.text("frame_id", frame_id))
+        self.grid.check_resolution("nav_msgs/Path")
+        text = waypoint_files.nav_path_text(self.points, self.yaw, str(checks.text("frame_id", frame_id)))
         return write_whole(path, text.encode())
 
     def to_f1tenth(self, path: str | os.PathLike[str], speed: float = 1.0) -> Path:
@@ -245,13 +239,9 @@ class Waypoints:
         documented to count from the y axis. Curvature is that of the circle through a point and those before and after,
         positive to the left, and 0 at both ends: take a spacing. These files hold laps in general; a path has an end.
         """
-        self._check_metres("a racing line")
+        self.grid.check_resolution("a racing line")
         speed = checks.number("speed", speed, 0.0, expected="metres per second, zero or more")
         return write_whole(path, waypoint_files.f1tenth_text(self.points, self.yaw, speed).encode())
-
-    def _check_metres(self, what: str) -> None:
-        if self.grid.resolution is None:
-            raise GridPathError(f"{what} is in metres, and the map does not say how large its cells are, expected a resolution")
 
 
 def metres_of(grid: OccupancyGrid) -> float:

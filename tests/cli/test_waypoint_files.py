@@ -54,6 +54,8 @@ def test_each_named_path_has_its_files(plan, tmp_path):
 
 
 def test_only_what_was_asked_for_is_written(plan, tmp_path):
+    assert plan("--waypoints", "yaml,f1tenth")[0] == 0 and list((tmp_path / "out").glob("[wr]a*"))
+    # Nor do those of an earlier plan stay.
     assert plan()[0] == 0 and plan("--waypoints", "csv", output="b")[0] == 0
     assert not list((tmp_path / "out").glob("[wr]a*"))
     assert {file.name.partition("-")[0] for file in (tmp_path / "b").glob("[wr]a*")} == {"waypoints"}

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_typestore
 
 from pymoo_gridpath import OccupancyGrid
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.nearest import Nearest
 from pymoo_gridpath.search.sight import visible
@@ -230,8 +230,8 @@ def test_a_racing_line(tmp_path):
 
 @pytest.mark.parametrize("tolerance", [-0.1, math.nan, "0.1", True])
 def test_tolerances_that_are_none(tolerance):
-    with pytest.raises(GridPathError, match=r"tolerance is .*expected a number of cells, zero or more"):
-        Smoother(OccupancyGrid(np.zeros((3, 3))), (0, 0)).waypoints(np.array([(0, 0), (1, 0)]), tolerance)
+    with pytest.raises(GridPathError, match=r"tolerance is .*expected a number of metres, zero or more"):
+        Smoother(OccupancyGrid(np.zeros((3, 3)), 0.5), (0, 0)).waypoints(np.array([(0, 0), (1, 0)]), tolerance)
 
 
 def test_paths_in_time_keep_their_cells():
@@ -242,3 +242,15 @@ def test_paths_in_time_keep_their_cells():
     for given_ in ({"tolerance": 1.0}, {"spacing": 0.5}):
         with pytest.raises(GridPathError, match="is not for a path in time"):
             smoother.waypoints(cells, **given_)
+
+
+def test_a_map_in_cells_has_cells(tmp_path):
+    grid = OccupancyGrid(np.eye(12)[::-1] * (np.arange(12) > 6), None).grow(1.5)
+    made = Smoother(grid, (0, 0)).waypoints(np.array([*((x, 0) for x in range(5)), *((4, y) for y in range(1, 4))]), 1.0, 0.75)
+    assert made.points[0].tolist() == [0.0, 0.0] and made.points[-1].tolist() == [4.0, 3.0]
+    assert np.hypot(*np.diff(made.points, axis=0).T).max() <= 0.75
+    assert made.length_m is None and made.clearance_m is None and "cells, turn" in str(made)
+    assert made.to_csv(tmp_path / "line.csv").read_text().startswith("x,y,yaw\n0.0,0.0,0.")
+    for write in (made.to_nav_path, made.to_f1tenth):
+        with pytest.raises(GridError, match="metres"):
+            write(tmp_path / "line")
