@@ -2,13 +2,17 @@
 
     python benchmarks/one_point_fronts.py FOLDER [--max-seconds 60]
 
-FOLDER holds ``depot.yaml`` and its image, the map of 604 x 307 cells of 5 cm of AWS RoboMaker's small warehouse as it ships with
-Navigation2. On it are 40 queries, 20 for a robot of 0.2 m radius and 20 for one of 0.3 m, drawn at random. For each the exact front
-of length and risk is found, with the paper's risk, which was the default on all maps, and with the robot's, which is the
-default on maps that state their resolution. Printed are the fronts of a single point, and the points of a front.
+FOLDER holds ``depot.yaml`` and its image, a map of 604 x 307 cells of 5 cm that ships with Navigation2. On it are 40 queries,
+20 for a robot of 0.2 m radius and 20 for one of 0.3 m, drawn at random, at least a third of the map apart and with something in
+the way: no path is as short as one on an empty map. For each the exact front of length and risk is found, with the paper's risk,
+which was the default on all maps, and with the robot's, which is the default on maps that state their resolution. Printed are
+the fronts of a single point, the points of a front, and on how many queries the safest path has a lower mean clearance than the
+shortest.
 
-The corridor is empty and rises by a cell in three. Printed is the turn of its safest path: with the robot's risk, with the same but
-not cut off, and with the paper's; of the exact front, and of NSGA-II with path-aware operators.
+Two corridors are empty and rise by a cell in three. Printed is the turn of the safest path, of the exact front and of NSGA-II,
+with a risk that is cut off and with one that is not, of which the tail alone tells paths apart: the robot's in a corridor 4 m
+wide, and the paper's in one of 0.55 m. All over the narrow one the robot's risk tells paths apart by more than a tail, so that
+the safest path follows the stairs of the middle; its waypoints are what to drive by.
 """
 
 from __future__ import annotations
@@ -22,13 +26,59 @@ from pymoo.optimize import minimize
 from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet
 from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.exact import Budget, exact_front
+from pymoo_gridpath.fields import clearance
 from pymoo_gridpath.maps import load_map
 from pymoo_gridpath.objectives import Objective, Vulnerability
 
 RISKS: dict[str, Objective] = {"paper": Vulnerability(variance=0.5), "robot": Vulnerability()}
 
 # Start and goal, x and y of each, by the robot's radius in metres.
-QUERIES: dict[float, list[tuple[int, int, int, int]]] = {}
+QUERIES: dict[float, list[tuple[int, int, int, int]]] = {
+    0.2: [
+        (550, 114, 317, 295),
+        (154, 213, 405, 13),
+        (255, 86, 8, 82),
+        (297, 259, 552, 87),
+        (469, 38, 489, 252),
+        (286, 58, 264, 264),
+        (588, 32, 72, 293),
+        (542, 285, 544, 12),
+        (297, 156, 501, 41),
+        (522, 264, 76, 254),
+        (365, 37, 254, 296),
+        (498, 117, 216, 164),
+        (102, 43, 505, 54),
+        (123, 81, 571, 83),
+        (145, 28, 284, 276),
+        (280, 151, 551, 31),
+        (562, 245, 13, 242),
+        (595, 38, 256, 78),
+        (248, 217, 489, 82),
+        (302, 217, 563, 71),
+    ],
+    0.3: [
+        (243, 55, 473, 195),
+        (125, 232, 311, 23),
+        (509, 36, 221, 126),
+        (240, 231, 516, 292),
+        (103, 267, 442, 253),
+        (145, 275, 368, 207),
+        (283, 95, 345, 297),
+        (40, 80, 573, 121),
+        (388, 290, 350, 16),
+        (438, 14, 226, 271),
+        (325, 20, 181, 280),
+        (572, 119, 20, 26),
+        (431, 201, 202, 34),
+        (548, 153, 286, 64),
+        (587, 283, 137, 70),
+        (371, 88, 146, 272),
+        (72, 220, 589, 202),
+        (542, 220, 336, 12),
+        (11, 75, 408, 42),
+        (513, 26, 225, 184),
+    ],
+}
 
 
 def front_of(grid: OccupancyGrid, start, goal, risk: Objective, seconds: float) -> TradeOffSet:
@@ -54,39 +104,45 @@ def count(folder: Path, seconds: float) -> None:
             median = f"{np.median(sizes):g}"
             print(f"{name:<8}{radius:>8g}{sizes.count(1):>8} of {len(sizes)}{median:>13}{max(sizes):>6}{worse:>19}", flush=True)
     n = sum(map(len, QUERIES.values()))
-    print(
-        f"fronts of one point of {n}: {totals['paper']} by the paper's risk, {totals['robot']} by the robot's (expected at most 2)"
-    )
+    paper, robot = totals.values()
+    print(f"fronts of one point, of {n}: {paper} by the paper's risk, {robot} by the robot's (expected at most 2)")
 
 
 def _mean_clearance(grid: OccupancyGrid, record) -> float:
     """Return the mean distance to obstacles along a path, in cells."""
-    from pymoo_gridpath.fields import clearance
-
     x, y = record.cells.T
     return float(clearance(grid)[y, x].mean())
 
 
-def corridor() -> tuple[OccupancyGrid, tuple[int, int], tuple[int, int]]:
-    """Return an empty corridor of 5 cm cells that rises by one cell in three, with its ends in the middle."""
-    length, half = 150, 40
+def corridor(length: int, half: int) -> tuple[OccupancyGrid, tuple[int, int], tuple[int, int]]:
+    """Return an empty corridor of 5 cm cells, ``half`` of them from its middle to its sides, with its ends in the middle."""
     x, y = np.meshgrid(np.arange(length), np.arange(length // 3 + 2 * half + 3))
     grid = OccupancyGrid(np.abs(y - x / 3 - half - 1) > half, 0.05, name="corridor")
     return grid, (2, half + 2), (length - 3, (length - 3) // 3 + half + 1)
 
 
+# Length and half the width in cells; the risk, and what the turn of its safest path is expected to be.
+CORRIDORS: tuple[tuple[int, int, str, Objective, str], ...] = (
+    (150, 40, "robot's", Vulnerability(), "expected at most 360"),
+    (150, 40, "robot's, not cut off", Vulnerability(cutoff=0.0), ""),
+    (80, 5, "paper's, cut off", Vulnerability(variance=0.5, cutoff=1e-3), "expected at most 360"),
+    (80, 5, "paper's", Vulnerability(variance=0.5), ""),
+    (80, 5, "robot's", Vulnerability(), ""),
+)
+
+
 def turn(seconds: float) -> None:
-    """Print how the safest paths of the corridor turn."""
-    grid, start, goal = corridor()
-    for name, risk in {**RISKS, "robot, not cut off": Vulnerability(cutoff=0.0)}.items():
+    """Print how the safest paths of the corridors turn."""
+    print(f"{'corridor':<14}{'risk':<22}{'exact paths':>12}{'turn of safest':>16}{'by NSGA-II':>12}")
+    for length, half, name, risk, expected in CORRIDORS:
+        grid, start, goal = corridor(length, half)
         exact = front_of(grid, start, goal, risk, seconds)
-        problem = GridPathProblem(grid, start, goal, "cells", ("length", risk))
-        found = TradeOffSet.from_results(
-            minimize(problem, make_algorithm("NSGA2", problem, pop_size=100), ("n_gen", 100), seed=1)
-        )
+        problem = exact.problem
+        found = minimize(problem, make_algorithm("NSGA2", problem, pop_size=100), ("n_gen", 100), seed=1)
+        searched = TradeOffSet.from_results(found).safest.turn
         print(
-            f"corridor, {name}: the safest of {len(exact)} exact paths turns by {exact.safest.turn:g} degrees"
-            f"{' (expected at most 360)' * (name == 'robot')}, that of NSGA-II by {found.safest.turn:g}"
+            f"{f'{length} x {2 * half + 1}':<14}{name:<22}{len(exact):>12}{exact.safest.turn:>16g}{searched:>12g}  {expected}",
+            flush=True,
         )
 
 

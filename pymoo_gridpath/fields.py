@@ -244,7 +244,7 @@ def inflation_cost(
     resolution = check_grid(grid).check_resolution("an inflation radius in metres")
     factor, radius = check_inflation(cost_scaling_factor, inflation_radius)
     box = grid.whole if box is None else check_box(box, grid)
-    reach = math.ceil(min(radius / resolution, max(grid.shape)))
+    reach = math.ceil(grid.radius_in_cells(radius))
     metres = distance_to_occupied(grid, box, reach) * resolution
     with np.errstate(under="ignore", over="ignore", invalid="ignore"):
         cost = np.where(metres <= radius * (1 + _SAME), np.exp(-factor * metres), 0.0)
