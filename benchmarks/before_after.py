@@ -254,12 +254,16 @@ def main() -> None:
             if arguments.only not in name:
                 continue
             mine = times.setdefault(name, {side: [] for side in SIDES})
+            if arguments.maps is not None:
+                print(name, file=sys.stderr, flush=True)
             for turn in range(arguments.turns):
                 # Who comes second may find warm caches, or a slow clock.
                 found = {}
                 for side in SIDES if (number + turn) % 2 == 0 else reversed(SIDES):
                     seconds, found[side] = versions[side].turn(k)
                     mine[side] += seconds
+                    if arguments.maps is not None:
+                        print(f"  {side}: {1e3 * np.median(seconds):.0f} ms", file=sys.stderr, flush=True)
                 different |= {name} if found["before"] != found["after"] else set()
         for version in versions.values():
             version.end()
