@@ -47,7 +47,8 @@ def least_distances(occupied: np.ndarray, paths: Sequence[np.ndarray], box: Box)
 def _distances(near: Nearest, occupied: np.ndarray, box: Box, cells: np.ndarray, aside: float) -> np.ndarray:
     """Return the distance of each cell's centre, moved up and to the right, float, shape (n,); each is worked out once."""
     height, width = occupied.shape
-    keys, seen = cells @ (1, width), np.zeros(occupied.size, dtype=bool)
+    keys: np.ndarray = cells[:, 0] + width * cells[:, 1]
+    seen = np.zeros(occupied.size, dtype=bool)
     seen[keys] = True
     places = np.flatnonzero(seen)
     points = np.stack([places % width, places // width], axis=1) + aside
