@@ -176,7 +176,7 @@ def _problems(w: World) -> dict[str, Call]:
         "Length": (objectives.Length, {}),
         **{
             f"{type(one).__name__}.{method}": (getattr(one, method), given)
-            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0))
+            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.LeastClearance())
             for method, given in (
                 ("moves", {"grid": w.grid}),
                 ("prepare", {"representation": w.problem.representation, "grid": w.grid}),
@@ -193,6 +193,7 @@ def _problems(w: World) -> dict[str, Call]:
         "Turn.field": (objectives.Turn().field, {"grid": w.grid}),
         "Turn.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
         "Vulnerability": (objectives.Vulnerability, {"variance": 2.0}),
+        "LeastClearance.field": (objectives.LeastClearance().field, {"grid": w.grid}),
         "Vulnerability.field": (objectives.Vulnerability(2.0).field, {"grid": w.grid}),
         "Vulnerability.field_in": (objectives.Vulnerability(2.0).field_in, {"grid": w.grid, "box": w.grid.whole}),
         # An objective of one's own, whose field and values are arguments too.

@@ -58,7 +58,7 @@ def add_plan_command(commands) -> None:
         type=lambda text: text.split(","),
         default=["length", "vulnerability"],
         metavar="A,B",
-        help="some of length, vulnerability, turn (default: length,vulnerability)",
+        help="some of length, vulnerability, turn, clearance (default: length,vulnerability)",
     )
     search.add_argument(
         "--obstacles", choices=("penalty", "constraint", "limit"), help="how collisions are ruled out (default: penalty)"
