@@ -25,6 +25,8 @@ PALETTE = {
     "knee": "#CC3377",
     "earliest": "#56B4E9",
     "widest": "#E69F00",
+    "cheapest": "#8C4A2F",
+    "flattest": "#7A7A00",
 }
 OCCUPIED, UNKNOWN, OTHERS, INK = "#3b3f45", "#b9bec6", "#8a8f98", "#111418"
 

@@ -88,6 +88,8 @@ def _maps(w: World) -> dict[str, Call]:
             {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose},
         ),
         "read_movingai": (maps.read_movingai, {"path": w.movingai_map, "corner_cutting": True, **pose}),
+        "read_raster": (maps.read_raster, {"path": w.npy_map}),
+        "read_terrain": (maps.read_terrain, {"path": w.movingai_map, "weights": {"S": 3.0}}),
         "read_npy": (maps.read_npy, {"path": w.npy_map, "corner_cutting": True, **pose}),
         "read_ros": (maps.read_ros, {"path": w.ros_map, "unknown": "occupied", "corner_cutting": True}),
         "read_scen": (maps.read_scen, {"path": w.scen, "grid": maps.read_movingai(w.movingai_map)}),
@@ -193,6 +195,13 @@ def _problems(w: World) -> dict[str, Call]:
         "Turn.field": (objectives.Turn().field, {"grid": w.grid}),
         "Turn.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
         "Vulnerability": (objectives.Vulnerability, {"variance": 2.0}),
+        "GroundCost": (objectives.GroundCost, {"cost": w.field, "weight": 2.0, "per": "entry", "name": "mud", "label": "Mud"}),
+        "Climb": (objectives.Climb, {"elevation": w.field, "name": "rise", "label": "Rise [m]"}),
+        **{
+            f"{type(one).__name__}.{method}": (getattr(one, method), {"grid": w.grid})
+            for one in (objectives.GroundCost(w.field), objectives.Climb(w.field))
+            for method in ("field", "moves")
+        },
         "LeastClearance.field": (objectives.LeastClearance().field, {"grid": w.grid}),
         "Vulnerability.field": (objectives.Vulnerability(2.0).field, {"grid": w.grid}),
         "Vulnerability.field_in": (objectives.Vulnerability(2.0).field_in, {"grid": w.grid, "box": w.grid.whole}),

@@ -123,7 +123,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         )
     meter = Meter(budget or Budget())
     usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)
-    objectives = [problem.objectives[k] for k in summed]
+    objectives: list[Objective] = [problem.objectives[k] for k in summed]
     levels = [cell_levels(problem.objectives[k], problem.grid, moves.box) for k in worst]
     if levels:
         # What else is to be minimised is searched many times; of paths that are equal in all, the shortest will do.

@@ -20,9 +20,12 @@ from pymoo_gridpath.objectives.base import (
     visiting_costs,
 )
 from pymoo_gridpath.objectives.clearance import LeastClearance
+from pymoo_gridpath.objectives.ground import Climb, GroundCost
 
 __all__ = [
     "OBJECTIVES",
+    "Climb",
+    "GroundCost",
     "LeastClearance",
     "Length",
     "MoveCosts",

@@ -38,6 +38,8 @@ NAME_STYLES = {
     "smoothest": NameStyle(PALETTE["smoothest"], (0, (1.2, 1.2)), "^"),
     "knee": NameStyle(PALETTE["knee"], (0, (6, 1.5, 1.2, 1.5)), "o"),
     "widest": NameStyle(PALETTE["widest"], (0, (3, 1)), "P"),
+    "cheapest": NameStyle(PALETTE["cheapest"], (0, (4, 1, 1, 1, 1, 1)), "p"),
+    "flattest": NameStyle(PALETTE["flattest"], (0, (2, 1.6)), "h"),
 }
 # Of names that the objectives of others have for their best path.
 OTHER_NAME = NameStyle(INK, (0, (3, 1, 1, 1, 1, 1)), "X")
