@@ -88,6 +88,7 @@ def _maps(w: World) -> dict[str, Call]:
             {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose},
         ),
         "read_movingai": (maps.read_movingai, {"path": w.movingai_map, "corner_cutting": True, **pose}),
+        "read_geotiff": (maps.read_geotiff, {"path": w.npy_map, "corner_cutting": True, "threshold": 0.5, "unknown": "free"}),
         "read_raster": (maps.read_raster, {"path": w.npy_map}),
         "read_terrain": (maps.read_terrain, {"path": w.movingai_map, "weights": {"S": 3.0}}),
         "read_npy": (maps.read_npy, {"path": w.npy_map, "corner_cutting": True, **pose}),

@@ -7,6 +7,7 @@
 from pymoo_gridpath.maps._files import MAX_CELLS, check_size, make_grid, read_string
 from pymoo_gridpath.maps.array import read_npy
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat, Query, format_of
+from pymoo_gridpath.maps.geotiff import read_geotiff
 from pymoo_gridpath.maps.image import read_image
 from pymoo_gridpath.maps.load import load_map
 from pymoo_gridpath.maps.movingai import ScenQuery, read_movingai, read_scen, read_terrain
@@ -31,6 +32,7 @@ __all__ = [
     "load_shipped",
     "make_grid",
     "query_of",
+    "read_geotiff",
     "read_image",
     "read_movingai",
     "read_npy",

@@ -9,6 +9,7 @@ import numpy as np
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.maps._files import require_file
 from pymoo_gridpath.maps.array import MAGIC, read_numbers
+from pymoo_gridpath.maps.geotiff import is_measured, load_geotiff
 from pymoo_gridpath.maps.image import read_pixels
 
 
@@ -19,7 +20,8 @@ def read_raster(path: str | os.PathLike[str]) -> np.ndarray:
     ----------
     path : str or path-like
         An array that `numpy.save` wrote, of any type of number, row 0 at the bottom; or a grey image, whose top row is the
-        highest one, with its values as they are: 0 for black, 255, or 65535 of 16 bits, for white.
+        highest one, with its values as they are: 0 for black, 255, or 65535 of 16 bits, for white; or a TIFF of one band that
+        says where it lies or holds other numbers, real ones among them, see `read_geotiff`. Where it lies is not looked at.
 
     Returns
     -------
@@ -30,7 +32,8 @@ def read_raster(path: str | os.PathLike[str]) -> np.ndarray:
     Raises
     ------
     MapError
-        If the file cannot be read, is neither, or the image is coloured.
+        If the file cannot be read, is none of these, or the image is coloured; of a GeoTIFF also if rasterio is not installed,
+        the extra ``geo``.
     """
     try:
         with open(require_file(path), "rb") as file:
@@ -39,6 +42,9 @@ def read_raster(path: str | os.PathLike[str]) -> np.ndarray:
         raise MapError(path, f"the file cannot be read ({error.strerror}), expected an array or an image") from None
     if head == MAGIC:
         return read_numbers(path)
+    if is_measured(path):
+        found = load_geotiff(path)
+        return np.where(found.missing, np.nan, found.values.astype(float))
     pixels = read_pixels(path)
     values = pixels.channels
     if values.ndim == 3:
