@@ -11,6 +11,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridError, GridPathError
 from pymoo_gridpath.fields import check_costs, check_field
+from pymoo_gridpath.grid import check_grid
 from pymoo_gridpath.maps import read_raster
 from pymoo_gridpath.neighbourhood import HEADINGS, LENGTHS
 from pymoo_gridpath.objectives.base import OBJECTIVES, Objective
@@ -92,13 +93,13 @@ class GroundCost(_OfRaster):
         self.name, self.label = _names(name, label, self.label)
 
     def field(self, grid):
-        costs = self._costs(grid)
+        costs = self._costs(check_grid(grid))
         return costs if self.per == "entry" else None
 
     def moves(self, grid):
+        costs = self._costs(check_grid(grid))
         if self.per == "entry":
             return None
-        costs = self._costs(grid)
         return np.stack([(costs + _left(costs, dx, dy)) / 2.0 * LENGTHS[m] for m, (dx, dy) in enumerate(HEADINGS)])
 
     def _costs(self, grid) -> np.ndarray:
@@ -155,7 +156,7 @@ class Climb(_OfRaster):
 
     def moves(self, grid):
         what = f"the elevation of the objective {shown(self.name)}"
-        heights = check_field(what, self.elevation, grid)
+        heights = check_field(what, self.elevation, check_grid(grid))
         wrong = ~np.isfinite(heights) & ~grid.occupied
         if wrong.any():
             y, x = np.argwhere(wrong)[0]
