@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 
 # Peak bytes a cell that can be reached, measured on open maps of 700 x 700 and 1400 x 1400 cells with two objectives.
-_CELLS, _MONOTONE = 520, 100
+_CELLS, _MONOTONE = 130, 100
 # The same for exact fronts, without those of the labels; where turns count, each cell has eight headings.
 _EXACT, _EXACT_WITH_TURN = 400, 900
 

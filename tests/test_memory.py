@@ -32,12 +32,12 @@ sys.exit(main(sys.argv[1:]))
 def test_a_plan_without_the_memory_for_it_ends_with_what_it_needs(tmp_path):
     resource = pytest.importorskip("resource")
     assert resource is not None
-    Image.fromarray(np.full((2500, 2500), 254, np.uint8)).save(tmp_path / "open.png")
-    arguments = ["plan", str(tmp_path / "open.png"), "--start", "1,1", "--goal", "2490,2490", "-o", str(tmp_path / "out")]
+    Image.fromarray(np.full((3500, 3500), 254, np.uint8)).save(tmp_path / "open.png")
+    arguments = ["plan", str(tmp_path / "open.png"), "--start", "1,1", "--goal", "3490,3490", "-o", str(tmp_path / "out")]
     done = subprocess.run([sys.executable, "-c", LIMITED, *arguments], capture_output=True, text=True, timeout=300)
     assert done.returncode == 2, done.stderr
     assert done.stderr.splitlines()[-1] == (
-        "pymoo-gridpath: memory ran out: a problem in 'cells' on 2500 x 2500 cells needs about 3.2 GB; expected a smaller map, "
+        "pymoo-gridpath: memory ran out: a problem in 'cells' on 3500 x 3500 cells needs about 1.6 GB; expected a smaller map, "
         "coarser cells or more free memory"
     )
     assert "Traceback" not in done.stderr

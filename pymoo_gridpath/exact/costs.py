@@ -130,6 +130,11 @@ class Costs:
         enter = enter if enter is not None and enter.any() else None
         return Costs(self.step.take(order, axis=0), self.field.take(order, axis=0), self.unit[order], self.off[order], enter)
 
+    def within(self, moves: Moves, part: Moves) -> Costs:
+        """Return the costs of the cells in a part of the box that ``moves`` are of."""
+        enter = None if self.enter is None else moves.part_of(self.enter, part).reshape(len(self.enter), -1, 8)
+        return Costs(self.step, moves.part_of(self.field, part), self.unit, self.off, enter)
+
     def values(self, points: np.ndarray) -> np.ndarray:
         """Return points, shape (N, k), in the units of the objectives: the same for equal sums in whatever unit."""
         # The nearest number to a product with 0.1 is not always the nearest to a tenth; with a power of two it is.

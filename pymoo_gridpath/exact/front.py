@@ -15,6 +15,7 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
 from pymoo_gridpath.exact.labels import Front
+from pymoo_gridpath.exact.one import front_of_one
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.timed import exact_timed_front
 from pymoo_gridpath.exact.two import front_of_two
@@ -203,8 +204,10 @@ def _search(
         front = _front_of_short_paths(moves, costs.take(order), start, goal, most - 1, meter)
     elif problem.n_obj == 3:
         front = front_of_three(moves, costs.take(order), start, goal, meter)
+    elif problem.n_obj == 1 and not costs.with_heading:
+        front = front_of_one(moves, costs, start, goal, meter)
     else:
-        # A single objective is searched as two equal ones.
+        # A single objective that depends on headings is searched as two equal ones.
         front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
     points = front.points[:, np.argsort(order)] + costs.field[:, start]
     lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import heapq
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
@@ -13,7 +12,8 @@ from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.neighbourhood import OPPOSITE
-from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
+from pymoo_gridpath.search import UNREACHABLE, Moves
+from pymoo_gridpath.search.shortest import Backward
 
 # Searches that are made side by side, whatever the machine, so that results are the same; in threads, which compiled kernels
 # let run, where a search takes long enough.
@@ -23,8 +23,14 @@ _SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**16
 class Hull(NamedTuple):
     """Points on the lower left hull of a front, and lower bounds for what lies between them.
 
+    Cells are those of the part of the grid in which the paths of the front lie.
+
     Attributes
     ----------
+    moves : Moves
+        Of that part.
+    costs : Costs
+    start, goal : int
     bounds : numpy.ndarray of int64, shape (2, n_states)
         Least first and least second cost from each state to the goal.
     points : numpy.ndarray of int64, shape (n, 2)
@@ -41,6 +47,10 @@ class Hull(NamedTuple):
         Column of ``weighted`` for each gap.
     """
 
+    moves: Moves
+    costs: Costs
+    start: int
+    goal: int
     bounds: np.ndarray
     points: np.ndarray
     paths: list[np.ndarray]
@@ -81,27 +91,31 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
 
 
 def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, map_) -> Hull:
-    def from_end(order):
-        taken = costs.take(order)
-        return backward_costs(moves, taken.step, taken.field, goal, costs.with_heading, stop=meter.stop, enter=taken.enter)
+    whole = moves
+    bounds, ends = _ends(moves, costs, start, goal, meter, map_)
+    if meter.message:
+        return Hull(moves, costs, start, goal, bounds, np.empty((0, 2), dtype=np.int64), [], *_no_weights(bounds))
+    (left, first), (right, last) = ends
+    # Where costs depend on headings, which of equal paths is found hangs on all labels, those that lead nowhere too.
+    most = (UNREACHABLE, UNREACHABLE) if costs.with_heading else (right[0], left[1])
+    # First the cells from where the goal is no farther than for the front, then those that lie on ways no longer than for it.
+    if not costs.with_heading:
+        near = (bounds[0] <= most[0]) & (bounds[1] <= most[1])
+        moves, costs, start, goal, (bounds,) = _around(near, moves, costs, start, goal, [bounds])
+    backward = moves.backward()
+    spent = [_spent(moves, backward, costs, k, start, bounds, most[k], meter) for k in range(2)]
+    spent = np.stack(spent)
+    if not costs.with_heading:
+        near = (spent[0] + bounds[0] <= most[0]) & (spent[1] + bounds[1] <= most[1])
+        moves, costs, start, goal, (bounds, spent) = _around(near, moves, costs, start, goal, [bounds, spent])
 
     def minimise(gap):
         _, low, high, _ = gap
         return _minimise(moves, costs, _normal(low, high), start, goal, spent, (high[0], low[1]), meter)
 
-    searches = list(map_(from_end, ((0, 1), (1, 0))))
-    bounds = np.stack([search[0] for search, _ in searches])
-    if meter.message:
-        return Hull(bounds, np.empty((0, 2), dtype=np.int64), [], *_no_weights(bounds))
-    (left, first), (right, last) = (
-        _follow(moves, costs, costs.take(order), search, start, goal)
-        for order, search in zip(((0, 1), (1, 0)), searches, strict=True)
-    )
-    del searches
+    first, last = (moves.from_grid(whole.to_grid(path)) for path in (first, last))
     n_weights = _affordable(n_weights, bounds, costs, meter)
     weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
-    backward = moves.backward()
-    spent = np.stack(list(map_(lambda k: _spent(moves, backward, costs, k, start, meter), range(2))))
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
     found, used = {left: first, right: last}, []
     # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
@@ -129,9 +143,40 @@ def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weigh
     points = sorted(found)
     paths = [found[point] for point in points]
     if not used:
-        return Hull(bounds, np.array(points), paths, *_no_weights(bounds))
+        return Hull(moves, costs, start, goal, bounds, np.array(points), paths, *_no_weights(bounds))
     column = np.array([column for _, column in sorted(narrow)])
-    return Hull(bounds, np.array(points), paths, np.array(used)[column], weighted, column)
+    return Hull(moves, costs, start, goal, bounds, np.array(points), paths, np.array(used)[column], weighted, column)
+
+
+def _ends(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, map_):
+    """Return lower bounds of both costs, int64, shape (2, n_states), and both ends of the front: their costs and their cells.
+
+    Where no cost depends on headings, bounds that are beyond an end are not worked out: they are too low, but beyond it.
+    """
+    orders = [costs.take(order) for order in ((0, 1), (1, 0))]
+    one, two = (Backward(moves, each.step, each.field, goal, costs.with_heading, enter=each.enter) for each in orders)
+    if costs.with_heading:
+        list(map_(lambda search: search.run(meter.stop), (one, two)))
+    else:
+        one.run(meter.stop, until=start)
+    ends = []
+    for search in (one, two):
+        if search is two and not meter.message and not costs.with_heading:
+            two.run(meter.stop, beyond=ends[0][0][1] + 1)
+        if not meter.message:
+            ends.append(_follow(moves, costs, search, start, goal))
+    if not meter.message and not costs.with_heading:
+        one.run(meter.stop, beyond=ends[1][0][0] + 1)
+    return np.stack([one.cost[0], two.cost[0]]), ends
+
+
+def _around(near: np.ndarray, moves: Moves, costs: Costs, start: int, goal: int, arrays: list[np.ndarray]):
+    """Return moves, costs, start, goal, and arrays of shape (k, n_states), of the part of the grid around some cells."""
+    part = moves.around(near)
+    if part is moves:
+        return moves, costs, start, goal, arrays
+    ends = part.from_grid(moves.to_grid(np.array([start, goal])))
+    return part, costs.within(moves, part), int(ends[0]), int(ends[1]), [moves.part_of(array, part) for array in arrays]
 
 
 def _no_weights(bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -155,24 +200,12 @@ def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter) 
     return n_weights
 
 
-def _follow(moves: Moves, costs: Costs, searched: Costs, found, start: int, goal: int):
-    """Return costs and cells of the path from the start that a search, in other costs or another order, found cheapest."""
-    search, ahead = found
-    best, first, with_heading = (UNREACHABLE, UNREACHABLE), -1, costs.with_heading
-    for m in range(8):
-        # No heading comes before the first step.
-        if moves.legal[start] >> m & 1:
-            cell = start + int(moves.offsets[m])
-            rest = search[:, 8 * cell + m if with_heading else cell]
-            total = tuple(int(searched.step[k, 8, m] + searched.field[k, cell] + rest[k]) for k in range(2))
-            if searched.enter is not None:
-                total = tuple(total[k] + int(searched.enter[k, cell, m]) for k in range(2))
-            if total < best:
-                best, first = total, m
+def _follow(moves: Moves, costs: Costs, found: Backward, start: int, goal: int):
+    """Return costs and cells of the path from the start that a search, in whatever costs, found cheapest."""
     total = np.zeros(2, dtype=np.int64)
     path = np.empty(moves.n_cells + 1, dtype=np.int64)
-    arrays = costs.step, costs.field, costs.enter, with_heading
-    n = follow(moves.offsets, *arrays, ahead, start, first, goal, total, path)
+    arrays = costs.step, costs.field, costs.enter, costs.with_heading, found.ahead
+    n = follow(moves.offsets, *arrays, start, found.first_heading(start), goal, total, path)
     return (int(total[0]), int(total[1])), path[:n].copy()
 
 
@@ -211,20 +244,23 @@ def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent:
 
     None if a budget is used up before. States from which no path below the corner goes on have no finite sum.
     """
-    step, field = (np.stack([_weighted(values, weights), values[0]]) for values in (costs.step, costs.field))
-    enter = None if costs.enter is None else np.stack([_weighted(costs.enter, weights), costs.enter[0]])
     # One unit beyond the corner lies what labels stay below, see _corners of the label search; and one more for rounding.
     limit = int((weights[0] * (corner[0] + 1) + weights[1] * (corner[1] + 1)) * (1 + 1e-12)) + 2
-    weighted = _weighted(spent, weights)
-    found = backward_costs(moves, step, field, goal, costs.with_heading, weighted, limit, meter.stop, enter)
+    found = Backward(moves, costs.step, costs.field, goal, costs.with_heading, spent, limit, costs.enter, weights)
+    found.run(meter.stop)
     if meter.message:
         return None
-    point, path = _follow(moves, costs, dataclasses.replace(costs, step=step, field=field, enter=enter), found, start, goal)
-    return found[0][0], point, path
+    point, path = _follow(moves, costs, found, start, goal)
+    return found.cost[0], point, path
 
 
-def _spent(moves: Moves, backward: Moves, costs: Costs, k: int, start: int, meter: Meter) -> np.ndarray:
-    """Return lower bounds of one of the costs from the start to each cell, by the moves taken backwards, shape (n_cells,)."""
+def _spent(
+    moves: Moves, backward: Moves, costs: Costs, k: int, start: int, bounds: np.ndarray, most: int, meter: Meter
+) -> np.ndarray:
+    """Return lower bounds of one of the costs from the start to each cell, by the moves taken backwards, shape (n_cells,).
+
+    Cells are left out, as if they could not be reached, through which no path costs ``most`` or less.
+    """
     step = np.broadcast_to(costs.step[k].min(axis=0), (2, *costs.step.shape[1:])).copy()
     enter = None
     if costs.enter is not None:
@@ -235,11 +271,10 @@ def _spent(moves: Moves, backward: Moves, costs: Costs, k: int, start: int, mete
             enter[:, leads, OPPOSITE[m]] = costs.enter[k, leads + moves.offsets[m], m]
     # The search enters the start instead of the cell that it set out from.
     field = np.stack([costs.field[k]] * 2)
-    ahead = backward_costs(backward, step, field, start, stop=meter.stop, enter=enter)[0][0]
-    spent = np.minimum(ahead + costs.field[k] - costs.field[k, start], UNREACHABLE)
+    other = costs.field[k] - costs.field[k, start]
+    rest = None if most == UNREACHABLE else bounds[k] + other
+    found = Backward(backward, step, field, start, spent=rest, limit=min(most + 1, UNREACHABLE), enter=enter)
+    found.run(meter.stop)
+    spent = np.minimum(found.cost[0] + other, UNREACHABLE)
     spent[start] = 0
     return spent
-
-
-def _weighted(values: np.ndarray, weights) -> np.ndarray:
-    return np.floor(weights[0] * values[0] + weights[1] * values[1]).astype(np.int64)

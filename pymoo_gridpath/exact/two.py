@@ -77,15 +77,16 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     n_weights = min(max(moves.n_cells // _CELLS_PER_WEIGHT, _LEAST_WEIGHTS), _MOST_WEIGHTS)
     hull = supported_points(moves, costs, start, goal, n_weights, meter)
     known, found = hull.points, [Front(hull.paths, hull.points)]
-    tolerances = _TOLERANCES_ON_LARGE if moves.n_cells > _LARGE else _TOLERANCES
+    tolerances = _TOLERANCES_ON_LARGE if hull.moves.n_cells > _LARGE else _TOLERANCES
     for tolerance in (*tolerances, 0.0):
         if meter.message:
             break
-        search = _Search(moves, costs, start, goal, hull, known, tolerance)
+        search = _Search(hull, known, tolerance)
         search.run(meter)
         found.append(Front(search.paths(), search.points()))
         known = _non_dominated(np.concatenate([known, found[-1].points]))
-    return merged(found) if meter.message else Front(search.smoothest_paths(meter), search.points())
+    front = merged(found) if meter.message else Front(search.smoothest_paths(meter), search.points())
+    return Front([moves.from_grid(hull.moves.to_grid(path)) for path in front.paths], front.points)
 
 
 def merged(fronts: list[Front]) -> Front:
@@ -109,8 +110,9 @@ class _Search(LabelSearch):
 
     pops_at_a_time = 2**18
 
-    def __init__(self, moves: Moves, costs: Costs, start: int, goal: int, hull: Hull, known: np.ndarray, tolerance: float):
-        super().__init__(moves, costs, start, goal, n_keys=2, n_counts=7)
+    def __init__(self, hull: Hull, known: np.ndarray, tolerance: float):
+        moves, costs, start = hull.moves, hull.costs, hull.start
+        super().__init__(moves, costs, start, hull.goal, n_keys=2, n_counts=7)
         self.hull, self.tolerance = hull, tolerance
         n_states = hull.bounds.shape[1]
         self.states = np.empty((n_states, 5), dtype=np.int64)

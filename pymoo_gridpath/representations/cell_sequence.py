@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
@@ -17,6 +16,7 @@ from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.paths import CellPaths, Paths
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import Representation, check_ends
+from pymoo_gridpath.search.lengths import cells_of_shortest, cheapest_length
 from pymoo_gridpath.search.sequences import cut_loops, mend
 
 # Of up to so many fields sums are looked at for the default length of a row: as many as an exact front has objectives.
@@ -194,13 +194,7 @@ def _room(coding: CellSequence, max_cells: int | None, fields, spare: float) -> 
     """Return ``max_cells``, checked, or its default."""
     grid, box = coding.grid, coding.box
     start, goal = coding.moves.index(coding.start), coding.moves.index(coding.goal)
-    graph = grid.crop(box).move_graph()
-    _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
-    least = 1
-    cell = goal
-    while cell != start:
-        cell = before[cell]
-        least += 1
+    least = cells_of_shortest(coding.moves, start, goal)
     if max_cells is None:
         regions = grid.regions[box.slices]
         reachable = np.count_nonzero(regions == regions.flat[start])
@@ -211,8 +205,9 @@ def _room(coding: CellSequence, max_cells: int | None, fields, spare: float) -> 
         fields = [_scaled(field, box, alone=len(given) == 1) for field in given] or [obstacle_potential(grid, box=box)]
         # Of several together, too: a path that costs nothing in either may be longer than those that cost nothing in one.
         sizes = range(1, 1 + (len(fields) if len(fields) <= _MOST_TOGETHER else 1))
-        together = (np.sum(some, axis=0) for n in sizes for some in itertools.combinations(fields, n))
-        safest = max(1 + math.floor(_safest_length(graph, field.ravel(), start, goal) + 1e-6) for field in together)
+        together = (functools.reduce(np.add, some) for n in sizes for some in itertools.combinations(fields, n))
+        lengths = (cheapest_length(coding.moves, field.ravel(), start, goal) for field in together)
+        safest = max(1 + math.floor(length + 1e-6) for length in lengths)
         return min(math.ceil(spare * max(safest, math.ceil(1.5 * least) + 8)), int(reachable))
     expected = f"a whole number of at least {least}, the cells of a shortest path"
     return checks.whole("max_cells", max_cells, least, MOST_GENES, expected=expected)
@@ -229,16 +224,3 @@ def _scaled(field: np.ndarray | BoxedField, box: Box, alone: bool) -> np.ndarray
         whole = np.asarray(field)
         inside = whole[box.slices]
     return inside / (whole.max() or 1.0)
-
-
-def _safest_length(graph: sparse.csr_array, field: np.ndarray, start: int, goal: int) -> float:
-    """Return the length of the shortest among the paths that are cheapest in a field."""
-    head = graph.indices
-    tail = np.repeat(np.arange(field.size, dtype=head.dtype), np.diff(graph.indptr))
-    cost = sparse.csr_array((field[head].astype(float), head, graph.indptr), shape=graph.shape)
-    least = csgraph.dijkstra(cost, indices=start)
-    # The cheapest paths are those whose every step adds no more than it must; sums of potentials are exact, others nearly.
-    with np.errstate(invalid="ignore", over="ignore"):
-        needed = least[tail] + field[head] <= least[head] * (1 + 1e-12)
-    steps = sparse.csr_array((graph.data[needed], (tail[needed], head[needed])), shape=graph.shape)
-    return float(csgraph.dijkstra(steps, indices=start)[goal])

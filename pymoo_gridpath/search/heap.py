@@ -1,8 +1,9 @@
-"""Binary heaps in one array, for kernels.
+"""Heaps in arrays, for kernels.
 
-An entry is a row of whole numbers, its keys, compared one after another, and its load. The kernels only move entries: whoever
-calls them keeps the count and sees that there is room. There is a heap of two keys, in which of equal entries the first stays
-before, and one of four.
+The kernels only move entries: whoever calls them keeps the count and sees that there is room. Two are binary, of rows of whole
+numbers, their keys, compared one after another, and their load: one of two keys, in which of equal entries the first stays
+before, and one of four. The third is of single keys, whole numbers or others, beside the cells that they belong to, with four
+entries below each.
 """
 
 from __future__ import annotations
@@ -114,3 +115,40 @@ def drop_first_of_four(heap, n):
         _move(heap, down, i)
         i = down
     _fill(heap, i, first, second, third, fourth, load)
+
+
+@kernel
+def push_key(keys, cells, n, key, cell):
+    """Add an entry to the ``n`` of a heap of single keys."""
+    i = n
+    while i > 0:
+        up = (i - 1) >> 2
+        if keys[up] <= key:
+            break
+        keys[i] = keys[up]
+        cells[i] = cells[up]
+        i = up
+    keys[i] = key
+    cells[i] = cell
+
+
+@kernel
+def drop_key(keys, cells, n):
+    """Move the last entry, number ``n``, of a heap of single keys to the place of the first, which has been taken."""
+    key = keys[n]
+    cell = cells[n]
+    i = 0
+    while True:
+        least = 4 * i + 1
+        if least >= n:
+            break
+        for k in range(least + 1, min(least + 4, n)):
+            if keys[k] < keys[least]:
+                least = k
+        if key <= keys[least]:
+            break
+        keys[i] = keys[least]
+        cells[i] = cells[least]
+        i = least
+    keys[i] = key
+    cells[i] = cell

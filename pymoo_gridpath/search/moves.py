@@ -10,6 +10,9 @@ import numpy as np
 from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.neighbourhood import DIAGONAL, HEADINGS, OPPOSITE
 
+# A part of a box is worked on alone if it has no more than this share of its cells.
+_WORTH_A_PART = 0.8
+
 
 def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     """Return the legal steps that lead back along others; see `Moves` for both arrays."""
@@ -127,6 +130,35 @@ class Moves:
         for m in range(8):
             kept.legal[np.flatnonzero(entered[m] & steps[m]) - self.offsets[m]] &= np.uint8(255 - (1 << m))
         return kept
+
+    def around(self, wanted: np.ndarray) -> Moves:
+        """Return the steps within the bounding box of wanted cells, bool, shape (n_cells,); itself if that saves little."""
+        wanted = wanted.reshape(self.height, self.width)
+        xs, ys = (np.flatnonzero(wanted.any(axis=axis)) for axis in (0, 1))
+        x0, x1, y0, y1 = int(xs[0]), int(xs[-1]) + 1, int(ys[0]), int(ys[-1]) + 1
+        if (x1 - x0) * (y1 - y0) > _WORTH_A_PART * self.n_cells:
+            return self
+        part = copy.copy(self)
+        part.box = Box(self.box.x0 + x0, self.box.y0 + y0, self.box.x0 + x1, self.box.y0 + y1)
+        part._is_whole = False
+        part.height, part.width = part.box.shape
+        legal = self.legal.reshape(self.height, self.width)[y0:y1, x0:x1].copy()
+        for edge, leaves in (
+            (legal[:, 0], HEADINGS[:, 0] < 0),
+            (legal[:, -1], HEADINGS[:, 0] > 0),
+            (legal[0], HEADINGS[:, 1] < 0),
+            (legal[-1], HEADINGS[:, 1] > 0),
+        ):
+            edge &= np.uint8(255 - sum(1 << m for m in np.flatnonzero(leaves).tolist()))
+        part.legal = legal.ravel()
+        part.offsets = (HEADINGS[:, 1] * part.width + HEADINGS[:, 0]).astype(np.int64)
+        return part
+
+    def part_of(self, values: np.ndarray, part: Moves) -> np.ndarray:
+        """Return those of values for each cell, shape (k, n_cells * n), that are for cells of a part of the box."""
+        y, x = part.box.y0 - self.box.y0, part.box.x0 - self.box.x0
+        values = values.reshape(len(values), self.height, self.width, -1)
+        return values[:, y : y + part.height, x : x + part.width].reshape(len(values), -1)
 
     @property
     def n_cells(self) -> int:

@@ -14,7 +14,10 @@ from pymoo_gridpath.search.moves import Moves
 UNREACHABLE = 2**61
 
 # Cells that are expanded before it is asked whether to stop: milliseconds when compiled.
-_POPS_AT_A_TIME = 2**13
+_POPS = 2**13
+
+# More lists than this, and a heap is as fast.
+_MOST_LISTS = 2**14
 
 
 def backward_costs(
@@ -34,23 +37,10 @@ def backward_costs(
 
     Parameters
     ----------
-    moves : Moves
-    step : numpy.ndarray of int64, shape (2, 9, 8)
-        First and second cost of a step along heading m (last index) after one along heading h (8: none before).
-    field : numpy.ndarray of int64, shape (2, n_cells)
-        First and second cost of entering each cell.
-    goal : int
-        Index of the goal cell.
-    with_heading : bool, default False
-        Whether costs depend on the heading before a step.
-    spent : numpy.ndarray of int64, shape (n_cells,), optional
-        Least first cost of a path from somewhere to each cell, 0 by default.
-    limit : int, optional
-        Cells are left out, as if no path led on, where the least first cost of what is spent and what lies ahead reaches it.
+    moves, step, field, goal, with_heading, spent, limit, enter
+        See `Backward`.
     stop : callable, optional
         Asked many times a second; if it returns True the search ends, and what it has found so far holds for nothing.
-    enter : numpy.ndarray of int64, shape (2, n_cells, 8), optional
-        First and second cost of entering each cell along each heading, besides.
 
     Returns
     -------
@@ -60,33 +50,160 @@ def backward_costs(
     ahead : numpy.ndarray of int8, shape (n_cells,) or (8 * n_cells,)
         Heading of the first step of that path; -1 at the goal, and where no path leads.
     """
-    cost = np.full((2, moves.n_cells * (8 if with_heading else 1)), UNREACHABLE)
-    ahead = np.full(cost.shape[1], -1, dtype=np.int8)
-    heap = np.empty((1024, 3), dtype=np.int64)
-    n = 0
-    for state in range(8 * goal, 8 * goal + 8) if with_heading else (goal,):
-        cost[:, state] = 0
-        push(heap, n, 0, 0, state)
-        n += 1
-    if spent is None:
-        spent = np.zeros(moves.n_cells, dtype=np.int64)
-    while n > 0:
-        arrays = step, field, enter, with_heading, spent, limit, cost, ahead
-        heap, n = _expand(moves.legal, moves.offsets, *arrays, heap, n, _POPS_AT_A_TIME)
-        if n > 0 and stop is not None and stop():
-            break
-    return cost, ahead
+    search = Backward(moves, step, field, goal, with_heading, spent, limit, enter)
+    search.run(stop)
+    return search.cost, search.ahead
+
+
+class Backward:
+    """A search for the cheapest paths to a goal that can be interrupted, and go on.
+
+    Parameters
+    ----------
+    moves : Moves
+    step : numpy.ndarray of int64, shape (2, 9, 8)
+        First and second cost of a step along heading m (last index) after one along heading h (8: none before).
+    field : numpy.ndarray of int64, shape (2, n_cells)
+        First and second cost of entering each cell.
+    goal : int
+        Index of the goal cell.
+    with_heading : bool, default False
+        Whether costs depend on the heading before a step.
+    spent : numpy.ndarray of int64, shape (n_cells,), or (2, n_cells) with weights, optional
+        Least first cost of a path from somewhere to each cell, 0 by default; with weights, least costs of both kinds.
+    limit : int, optional
+        Cells are left out, as if no path led on, where the least first cost of what is spent and what lies ahead reaches it.
+    enter : numpy.ndarray of int64, shape (2, n_cells, 8), optional
+        First and second cost of entering each cell along each heading, besides.
+    weights : (float, float), optional
+        What is minimised then is the sum of both costs times these, each part of it rounded down, and next the first cost.
+
+    Attributes
+    ----------
+    cost, ahead
+        See `backward_costs`. Those of a search that is not at its end hold for what is nearer than it has come.
+    """
+
+    def __init__(
+        self,
+        moves: Moves,
+        step: np.ndarray,
+        field: np.ndarray,
+        goal: int,
+        with_heading: bool = False,
+        spent: np.ndarray | None = None,
+        limit: int = UNREACHABLE,
+        enter: np.ndarray | None = None,
+        weights: tuple[float, float] | None = None,
+    ):
+        self.moves, self.field, self.enter, self.with_heading, self.weights = moves, field, enter, with_heading, weights
+        self.step = step if weights is None else _sums(step, weights)
+        self.spent, self.limit = spent, limit
+        self.cost = np.full((2, moves.n_cells * (8 if with_heading else 1)), UNREACHABLE)
+        self.ahead = np.full(self.cost.shape[1], -1, dtype=np.int8)
+        self.cost[:, slice(8 * goal, 8 * goal + 8) if with_heading else goal] = 0
+        width, n_lists = (0, 0) if with_heading else self._lists()
+        self._shift, self._lists_of = width.bit_length() - 1, None
+        # Whether weights are applied on the way, to what each step takes.
+        self._fused = weights is not None and n_lists > 0
+        if n_lists:
+            self._lists_of = np.full(n_lists, -1, dtype=np.int32), np.full((2, moves.n_cells), -1, dtype=np.int32)
+            self._lists_of[0][0] = goal
+            self._counts, self._step = np.array([0, 1]), np.ascontiguousarray(self.step[:, 8])
+            self._spent = None if spent is None else np.atleast_2d(spent)
+            return
+        if weights is not None:
+            # The heap takes costs as they are.
+            self.field, self.spent = _sums(field, weights), None if spent is None else _sums(spent, weights)[0]
+            self.enter = None if enter is None else _sums(enter, weights)
+        self._heap, self._n = np.empty((1024, 3), dtype=np.int64), 0
+        for state in range(8 * goal, 8 * goal + 8) if with_heading else (goal,):
+            push(self._heap, self._n, 0, 0, state)
+            self._n += 1
+        if self.spent is None:
+            self.spent = np.zeros(moves.n_cells, dtype=np.int64)
+
+    def _lists(self) -> tuple[int, int]:
+        """Return the width in first cost of the lists that cells may be taken from, and how many it takes; 0 if they do not do.
+
+        A step that costs less than the width would lead from a list to itself.
+        """
+        least, most = int(self.step[0].min()), int(self.step[0].max())
+        if least <= 0:
+            return 0, 0
+        for costs in (self.field, self.enter):
+            if costs is not None and self.weights is None:
+                most += int(costs[0].max(initial=0))
+            elif costs is not None and self.weights is not None:
+                most += sum(
+                    int(weight * int(part.max(initial=0))) + 1 for weight, part in zip(self.weights, costs, strict=True)
+                )
+        width = 1 << (least.bit_length() - 1)
+        n_lists = 1 << (most // width + 2).bit_length()
+        return (width, n_lists) if n_lists <= _MOST_LISTS else (0, 0)
+
+    def run(self, stop: Callable[[], bool] | None = None, until: int | None = None, beyond: int = UNREACHABLE) -> None:
+        """Go on until all is found.
+
+        Parameters
+        ----------
+        stop : callable, optional
+            Asked many times a second; if it returns True the search ends, and what it has found so far holds for nothing.
+        until : int, optional
+            Or until the cost of this cell is found, and all that are no greater; only without headings.
+        beyond : int, optional
+            Or until all first costs below this are found.
+        """
+        moves, until = self.moves, -1 if until is None else until
+        while True:
+            if self._lists_of is not None:
+                costs = self._step, self.field, self.enter, self._fused, self.weights or (1.0, 0.0), self._spent
+                lists = *self._lists_of, self._counts, self._shift
+                done = _take(
+                    moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS
+                )
+            else:
+                arrays = self.step, self.field, self.enter, self.with_heading, self.spent, self.limit, self.cost, self.ahead
+                heap = self._heap, self._n
+                self._heap, self._n, done = _expand(moves.legal, moves.offsets, *arrays, *heap, until, beyond, _POPS)
+            if done or (stop is not None and stop()):
+                break
+
+    def first_heading(self, cell: int) -> int:
+        """Return the heading of the first step of the cheapest path that begins in a cell, -1 if there is none."""
+        best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights if self._fused else None
+        for m in range(8):
+            if not self.moves.legal[cell] >> m & 1:
+                continue
+            after = cell + int(self.moves.offsets[m])
+            total = self.step[:, 8, m] + self.cost[:, 8 * after + m if self.with_heading else after]
+            for costs in (self.field[:, after], None if self.enter is None else self.enter[:, after, m]):
+                if costs is not None:
+                    total = total + (costs if weights is None else _sums(costs, weights))
+            if tuple(total.tolist()) < best:
+                best, first = tuple(total.tolist()), m
+        return first
+
+
+def _sums(costs: np.ndarray, weights: tuple[float, float]) -> np.ndarray:
+    """Return weighted sums of two costs, rounded down, and the first cost."""
+    return np.stack([np.floor(weights[0] * costs[0] + weights[1] * costs[1]).astype(np.int64), costs[0]])
 
 
 @kernel
-def _expand(legal, offsets, step, field, enter, with_heading, spent, limit, cost, ahead, heap, n, max_pops):
-    """Expand at most so many of the ``n`` states in a heap, cheapest first; return the heap and how many it then holds."""
+def _expand(legal, offsets, step, field, enter, with_heading, spent, limit, cost, ahead, heap, n, until, beyond, max_pops):
+    """Expand at most so many of the ``n`` states in a heap, cheapest first.
+
+    Return the heap, how many it then holds, and whether the search has come as far as it is to.
+    """
     n_cells = len(legal)
     pops = 0
     while n > 0 and pops < max_pops:
         first = heap[0, 0]
         second = heap[0, 1]
         state = heap[0, 2]
+        if first >= beyond or (until >= 0 and first > cost[0, until]):
+            return heap, n, True
         drop_first(heap, n)
         n -= 1
         if first > cost[0, state] or second > cost[1, state]:
@@ -118,7 +235,7 @@ def _expand(legal, offsets, step, field, enter, with_heading, spent, limit, cost
                     ahead[origin] = m
                     push(heap, n, total1, total2, origin)
                     n += 1
-    return heap, n
+    return heap, n, n == 0
 
 
 @kernel
@@ -127,3 +244,117 @@ def grown(heap):
     larger = np.empty((2 * heap.shape[0], heap.shape[1]), dtype=heap.dtype)
     larger[: heap.shape[0]] = heap
     return larger
+
+
+@kernel
+def _take(
+    legal,
+    offsets,
+    step,
+    field,
+    enter,
+    fused,
+    weights,
+    spent,
+    limit,
+    cost,
+    ahead,
+    lists,
+    links,
+    counts,
+    shift,
+    until,
+    beyond,
+    max_pops,
+):
+    """Take at most so many cells from lists, those of the list with the least first costs first.
+
+    Cells are in the list of their first cost, by its bits from ``shift`` on; lists come round again. No step costs less than a
+    list is wide, so that the costs of what is in it are final once its turn has come.
+
+    Parameters
+    ----------
+    lists : int32, shape (n,)
+        The first cell of each list, -1 if it has none; n is a power of two.
+    links : int32, shape (2, n_cells)
+        The next cell in the list of each, and the one before, -1 at the ends.
+    counts : int64, shape (2,)
+        The number of the list whose turn it is, and how many cells are in all lists.
+
+    Returns
+    -------
+    bool
+        Whether the search has come as far as it is to.
+    """
+    mask = len(lists) - 1
+    pops = 0
+    while counts[1] > 0 and pops < max_pops:
+        cell = np.int64(lists[counts[0] & mask])
+        if cell < 0:
+            counts[0] += 1
+            reached = counts[0] << shift
+            if reached >= beyond or (until >= 0 and reached > cost[0, until]):
+                return True
+            continue
+        pops += 1
+        _unlink(lists, links, counts[0] & mask, cell)
+        counts[1] -= 1
+        if fused:
+            first = cost[0, cell] + np.int64(np.floor(weights[0] * field[0, cell] + weights[1] * field[1, cell]))
+            second = cost[1, cell] + field[0, cell]
+        else:
+            first = cost[0, cell] + field[0, cell]
+            second = cost[1, cell] + field[1, cell]
+        for m in range(8):
+            before = cell - offsets[m]
+            if before < 0 or before >= len(legal) or not (legal[before] >> m) & 1:
+                continue
+            total1 = first + step[0, m]
+            total2 = second + step[1, m]
+            if enter is not None:
+                if fused:
+                    total1 += np.int64(np.floor(weights[0] * enter[0, cell, m] + weights[1] * enter[1, cell, m]))
+                    total2 += enter[0, cell, m]
+                else:
+                    total1 += enter[0, cell, m]
+                    total2 += enter[1, cell, m]
+            known = cost[0, before]
+            if total1 > known or (total1 == known and total2 >= cost[1, before]):
+                continue
+            if spent is not None:
+                so_far = spent[0, before]
+                if fused:
+                    so_far = np.int64(np.floor(weights[0] * so_far + weights[1] * spent[1, before]))
+                if total1 + so_far >= limit:
+                    continue
+            elif total1 >= limit:
+                continue
+            cost[0, before] = total1
+            cost[1, before] = total2
+            ahead[before] = m
+            if known < UNREACHABLE and known >> shift == total1 >> shift:
+                continue
+            if known < UNREACHABLE:
+                _unlink(lists, links, (known >> shift) & mask, before)
+            else:
+                counts[1] += 1
+            here = (total1 >> shift) & mask
+            links[0, before] = lists[here]
+            links[1, before] = -1
+            if lists[here] >= 0:
+                links[1, lists[here]] = before
+            lists[here] = before
+    return counts[1] == 0
+
+
+@kernel
+def _unlink(lists, links, number, cell):
+    """Take a cell out of a list."""
+    after = links[0, cell]
+    before = links[1, cell]
+    if before >= 0:
+        links[0, before] = after
+    else:
+        lists[number] = after
+    if after >= 0:
+        links[1, after] = before

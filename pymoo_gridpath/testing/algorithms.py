@@ -6,8 +6,6 @@ import copy
 import hashlib
 import pickle
 import random
-import subprocess
-import sys
 import warnings
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -30,6 +28,7 @@ from pymoo_gridpath.study import ProblemSpec, Study, plan_study
 from pymoo_gridpath.study.planning.build import build_termination
 from pymoo_gridpath.study.running.execute import execute
 from pymoo_gridpath.study.running.record import from_bytes
+from pymoo_gridpath.testing.elsewhere import elsewhere
 from pymoo_gridpath.testing.global_state import global_state
 
 # One of the paper's codings, one of its bits, and one in which paths may turn back.
@@ -187,10 +186,7 @@ class AlgorithmSuite:
     def test_the_same_bits_in_another_process(self):
         if not self.row.reproducible:
             pytest.skip("it says that it is not reproducible")
-        code = "import sys, pickle; suite = pickle.load(sys.stdin.buffer); print(suite._digest_here())"
-        path = {"PYTHONPATH": ":".join(filter(None, sys.path)), "PYTHONHASHSEED": "77"}
-        done = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(self), capture_output=True, env=path, check=True)
-        assert done.stdout.decode().split()[-1] == self._digest_here()
+        assert elsewhere(self._digest_here) == self._digest_here()
 
     def _digest_here(self) -> str:
         return _digest(self.run(self.problem("cells")).pop)

@@ -150,7 +150,7 @@ def _paths(grid: OccupancyGrid) -> list[tuple[Cell, ...]]:
     return [path.cells for path in enumerate_paths(grid, (0, 0), (grid.width - 1, grid.height - 1))]
 
 
-@functools.lru_cache(maxsize=1 << 15)
+@functools.lru_cache(maxsize=1 << 17)
 def _headings_of(cells: tuple[Cell, ...]) -> tuple[list[int], int]:
     """Return the headings of a path's steps, and its turn in units of 45 degrees."""
     headings = [_HEADINGS[b[0] - a[0], b[1] - a[1]] for a, b in itertools.pairwise(cells)]

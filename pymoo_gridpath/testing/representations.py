@@ -289,7 +289,9 @@ class RepresentationSuite:
         problem = GridPathProblem(coding.grid, coding.start, coding.goal, coding, ["length", "vulnerability", "turn"])
         F = []
         for _ in range(2):
-            search = NSGA2(pop_size=12, **operators(problem))
+            search: Any = NSGA2(pop_size=12, **operators(problem))
+            # Where there are but few paths, new ones are looked for a hundred times otherwise.
+            search.mating.n_max_iterations = 5
             result: Any = minimize(problem, search, ("n_gen", 3), seed=1)
             F.append(result.F)
         assert np.array_equal(*F), "the same seed gave another result"

@@ -1,8 +1,6 @@
 """The paper's preset, several runs, the first-legal-path termination, and reproducibility across processes."""
 
 import hashlib
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -16,6 +14,7 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.problems.members import are_legal
+from pymoo_gridpath.testing.elsewhere import elsewhere
 
 GRID = random_dense_grid(10, 0.3, 1)
 QUERY = (0, 0), (9, 9)
@@ -128,26 +127,15 @@ def test_observers_that_cannot_be_called_so_are_refused_before_the_search(observ
         minimize_runs(*setup, n_runs=1, observe=observe)
 
 
-PROGRAM = """
-import hashlib, sys
-from pymoo.optimize import minimize
-from pymoo_gridpath.algorithms import make_algorithm
-from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
-from pymoo_gridpath.problems.members import are_legal
-problem = GridPathProblem(random_dense_grid(10, 0.3, 1), (0, 0), (9, 9), sys.argv[2])
-result = minimize(problem, make_algorithm(sys.argv[1], problem, pop_size=30), ("n_gen", 10), seed=5)
-pop = result.pop
-print(hashlib.sha256(pop.get("X").tobytes() + pop.get("F").tobytes()).hexdigest())
-"""
+def digest_of_a_run(name, representation):
+    """Return what tells the final population of a run from others."""
+    problem = GridPathProblem(random_dense_grid(10, 0.3, 1), (0, 0), (9, 9), representation)
+    pop = minimize(problem, make_algorithm(name, problem, pop_size=30), ("n_gen", 10), seed=5).pop
+    return hashlib.sha256(pop.get("X").tobytes() + pop.get("F").tobytes()).hexdigest()
 
 
 @pytest.mark.parametrize(
     ("name", "representation"), [("NSGA2", "integer"), ("NSGA2", "mixed"), ("SPEA2", "binary"), ("MOEAD", "integer")]
 )
-def test_same_seed_same_bits_in_a_fresh_process(name, representation):
-    problem = GridPathProblem(GRID, *QUERY, representation)
-    pop = minimize(problem, make_algorithm(name, problem, pop_size=30), ("n_gen", 10), seed=5).pop
-    here = hashlib.sha256(pop.get("X").tobytes() + pop.get("F").tobytes()).hexdigest()
-    command = [sys.executable, "-c", PROGRAM, name, representation]
-    there = subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
-    assert there == here
+def test_same_seed_same_bits_in_another_process(name, representation):
+    assert elsewhere(digest_of_a_run, name, representation) == digest_of_a_run(name, representation)

@@ -334,3 +334,17 @@ def test_dense_scenarios_have_a_front_of_few_paths():
     for seed in range(5):
         grid = random_dense_grid(16, 1.0, seed)
         assert len(GridPathProblem(grid, (0, 0), (15, 15), "integer").pareto_front(max_seconds=60)) >= 1
+
+
+@pytest.mark.parametrize("objectives", [("length", "vulnerability"), ("vulnerability", "length"), ("length", "turn")])
+def test_fronts_and_paths_are_the_same_in_the_part_around_them_and_on_the_whole(objectives, monkeypatch):
+    for seed in range(6):
+        grid = random_grid(40, seed, 0.25)
+        free = np.argwhere(grid.regions == grid.regions[0, 0])
+        start, goal = (tuple(cell[::-1].tolist()) for cell in np.random.default_rng(seed).choice(free, 2, replace=False))
+        problem = GridPathProblem(grid, start, goal, "cells", list(objectives))
+        part = exact_front(problem)
+        with monkeypatch.context() as whole:
+            whole.setattr("pymoo_gridpath.search.moves._WORTH_A_PART", 0.0)
+            found = exact_front(problem)
+        assert np.array_equal(part.F, found.F) and np.array_equal(part.X, found.X)
