@@ -6,7 +6,7 @@ import copy
 import functools
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -289,7 +289,7 @@ class Vulnerability(Risk):
     nearest : bool, optional
         Whether the nearest obstacle counts alone; by default unless the variance is given, or the map is in cells.
     cutoff : float, optional
-        Potentials below this are 0; the peak of a bell is 1. By default 0.001 where the nearest obstacle counts alone, else 0.
+        Potentials below this are 0; the peak of a bell is 1. By default 1e-6 where the nearest obstacle counts alone, else 0.
 
     Raises
     ------
@@ -304,7 +304,7 @@ class Vulnerability(Risk):
     --------
     >>> grid = OccupancyGrid([[0, 0, 0], [0, 1, 0]], resolution=0.05)
     >>> Vulnerability().on(grid)
-    Vulnerability(sigma_m=0.3, nearest=True, cutoff=0.001)
+    Vulnerability(sigma_m=0.3, nearest=True, cutoff=1e-06)
     >>> Vulnerability().on(grid.replace(resolution=None))
     Vulnerability(variance=0.5, nearest=False, cutoff=0.0)
     """
@@ -329,7 +329,7 @@ class Vulnerability(Risk):
         vars(self).update(given_bell(variance, sigma_m, nearest, cutoff))
 
     @property
-    def _bell(self) -> dict[str, float | bool | None]:
+    def _bell(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in Bell._fields}
 
     def on(self, grid):
