@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from pymoo_gridpath.objectives.base import (
     OBJECTIVES,
-    Inflation,
     Length,
     MoveCosts,
     Objective,
     Prepared,
-    Risk,
     Turn,
-    Vulnerability,
     avoiding_costs,
     boxed_field_of,
     field_of,
@@ -23,6 +20,7 @@ from pymoo_gridpath.objectives.base import (
 )
 from pymoo_gridpath.objectives.clearance import LeastClearance
 from pymoo_gridpath.objectives.ground import Climb, GroundCost
+from pymoo_gridpath.objectives.risk import Inflation, Risk, Vulnerability
 
 __all__ = [
     "OBJECTIVES",
