@@ -62,6 +62,8 @@ def json_text(trade_off) -> str:
         **trade_off.meta,
         "objectives": list(trade_off.objective_names),
         "labels": {objective.name: objective.label for objective in problem.objectives},
+        "maximised": [objective.name for objective in problem.objectives if objective.maximise],
+        "best": {objective.name: objective.best for objective in problem.objectives if objective.best},
         "feasible": trade_off.feasible,
     }
     grids = {"occupied_runs": problem.grid}
@@ -120,7 +122,9 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
 def shown_measures(trade_off) -> dict[str, np.ndarray]:
     """Return the measures that tables show: of those that there are in cells and in metres, the metres."""
     measures = trade_off.measures
-    return {name: values for name, values in measures.items() if f"{name}_m" not in measures}
+    # The least clearance, as an objective, is another one than the room beside the robot.
+    kept = [name for name in trade_off.objective_names if name != "length"]
+    return {name: values for name, values in measures.items() if f"{name}_m" not in measures or name in kept}
 
 
 def _heading(trade_off) -> str:
