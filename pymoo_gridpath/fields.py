@@ -22,7 +22,7 @@ QUANTUM = 2.0**-30
 PAPER_VARIANCE = 0.5
 
 # The robot's bell: standard deviation in metres and at least in cells, and where it is cut off.
-ROBOT_SIGMA_M, LEAST_SIGMA, ROBOT_CUTOFF = 0.3, 2.0, 1e-3
+ROBOT_SIGMA_M, LEAST_SIGMA, ROBOT_CUTOFF = 0.3, 2.0, 1e-6
 
 # Standard deviations in cells.
 _NARROWEST, _WIDEST = 1e-100, 1e12
@@ -86,9 +86,10 @@ def settled_bell(
     """
     given = given_bell(variance, sigma_m, nearest, cutoff)
     if variance is None and sigma_m is None:
-        in_cells = grid.resolution is None
-        width = {"variance": PAPER_VARIANCE} if in_cells else {"sigma_m": max(ROBOT_SIGMA_M, LEAST_SIGMA * grid.resolution)}
-        given = {**width, **given}
+        if grid.resolution is None:
+            given["variance"] = PAPER_VARIANCE
+        else:
+            given["sigma_m"] = max(ROBOT_SIGMA_M, LEAST_SIGMA * grid.resolution)
     alone = given.setdefault("nearest", "sigma_m" in given)
     given.setdefault("cutoff", ROBOT_CUTOFF if alone else 0.0)
     return Bell(**{"variance": None, "sigma_m": None, **given})
@@ -140,7 +141,7 @@ def obstacle_potential(
     mislead: thick regions weigh as if there were more to run into.
 
     What is not given the map decides. One that states its resolution is a robot's: the bell is that of the nearest obstacle,
-    with a standard deviation of 0.3 m, at least two cells, and cut off at 0.001. A map in cells is in the world of the paper:
+    with a standard deviation of 0.3 m, at least two cells, and cut off at 1e-6. A map in cells is in the world of the paper:
     bells of all obstacles are added, with a variance of 0.5 squared cells, and nothing is cut off. A width that is given says
     which of the two is meant.
 
@@ -158,7 +159,7 @@ def obstacle_potential(
         Whether the nearest obstacle counts alone.
     cutoff : float, optional
         Potentials below this are 0, in units in which the peak of a bell, on the obstacle, is 1; from 0 to below 1. By default
-        0.001 if the nearest obstacle counts alone, which a bell reaches at 3.7 standard deviations (1.1 m of 0.3 m), else 0.
+        1e-6 if the nearest obstacle counts alone, which a bell reaches at 5.3 standard deviations (1.6 m of 0.3 m), else 0.
         The tail beyond says nothing of safety, and would decide between paths that are as safe as one another.
 
     Returns

@@ -19,6 +19,7 @@ from pymoo_gridpath.cli.arguments import (
     operators,
     positive,
 )
+from pymoo_gridpath.cli.ground import add_ground, given_ground, ground_of
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
 from pymoo_gridpath.cli.query import add_query, ends, grown
 from pymoo_gridpath.cli.resume import add_resume, read_stored, said, write_populations
@@ -61,7 +62,7 @@ def add_plan_command(commands) -> None:
         type=lambda text: text.split(","),
         default=["length", "vulnerability"],
         metavar="A,B",
-        help="some of length, vulnerability, turn, inflation (default: length,vulnerability)",
+        help="some of length, vulnerability, turn, inflation, clearance (default: length,vulnerability)",
     )
     search.add_argument(
         "--risk",
@@ -97,6 +98,7 @@ def add_plan_command(commands) -> None:
     search.add_argument("--runs", type=positive, metavar="N", help="runs that are merged into one front (default: 1)")
     search.add_argument("--max-seconds", type=float, metavar="S", help="time of a planner; what it has found by then is kept")
     search.add_argument("--seed", type=natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
+    add_ground(plan)
     plan.add_argument(
         "-o",
         "--output",
@@ -134,6 +136,8 @@ def _plan(arguments) -> int:
     check_waypoint_options(arguments, grid)
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
+    grid, ground = ground_of(grid, map_name, arguments)
+    arguments.objectives = [*arguments.objectives, *ground]
     grid = grown(grid, arguments)
     start, goal = ends(grid, query_of(map_name), arguments)
     objectives = _objectives(arguments, grid)
@@ -358,6 +362,7 @@ def _write_paths(problem, results, arguments, name: str, source: dict, interrupt
         "source_map": source,
         "interrupted": interrupted,
         **({} if resumed is None else {"resumed_from_seed": resumed}),
+        **given_ground(arguments),
     }
     if results:
         trade_off = TradeOffSet.from_results(results, settings=settings)

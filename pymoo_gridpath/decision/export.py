@@ -13,6 +13,7 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.provenance import describe_problem, plain
 from pymoo_gridpath.errors import GridPathError, counted
+from pymoo_gridpath.grid import Cell, OccupancyGrid
 
 FORMAT = "pymoo_gridpath trade-off set"
 FORMAT_VERSION = 3
@@ -61,6 +62,8 @@ def json_text(trade_off) -> str:
         **trade_off.meta,
         "objectives": list(trade_off.objective_names),
         "labels": {objective.name: objective.label for objective in problem.objectives},
+        "maximised": [objective.name for objective in problem.objectives if objective.maximise],
+        "best": {objective.name: objective.best for objective in problem.objectives if objective.best},
         "feasible": trade_off.feasible,
     }
     grids = {"occupied_runs": problem.grid}
@@ -119,13 +122,24 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
 def shown_measures(trade_off) -> dict[str, np.ndarray]:
     """Return the measures that tables show: of those that there are in cells and in metres, the metres."""
     measures = trade_off.measures
-    return {name: values for name, values in measures.items() if f"{name}_m" not in measures}
+    # The least clearance, as an objective, is another one than the room beside the robot.
+    kept = [name for name in trade_off.objective_names if name != "length"]
+    return {name: values for name, values in measures.items() if f"{name}_m" not in measures or name in kept}
 
 
 def _heading(trade_off) -> str:
     problem = trade_off.problem
-    heading = f"{counted(len(trade_off), 'trade-off path')} from {problem.start} to {problem.goal} on {problem.grid.name!r}"
+    start, goal = (place_in_words(problem.grid, end) for end in (problem.start, problem.goal))
+    heading = f"{counted(len(trade_off), 'trade-off path')} from {start} to {goal} on {problem.grid.name!r}"
     return heading if trade_off.feasible else f"{heading}\nNOT FEASIBLE: {trade_off.infeasibility}"
+
+
+def place_in_words(grid: OccupancyGrid, cell: Cell) -> str:
+    """Return a cell in words, in metres where the map has them."""
+    if grid.resolution is None:
+        return f"{tuple(cell)}"
+    x, y = (f"{value:.6g}" for value in np.round(grid.to_metres(cell), 6) + 0.0)
+    return f"({x}, {y}) m"
 
 
 def _rows_shown(trade_off, max_rows: int | None) -> Sequence[int]:

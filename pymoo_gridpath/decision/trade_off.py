@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,20 +22,21 @@ from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.pictures import png
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search.smoother import Smoother
 from pymoo_gridpath.search.waypoints import Waypoints
 from pymoo_gridpath.versions import versions
 
-#: What members of a trade-off set go by, in the order in which tables and figures show them; of paths in time, one is the
-#: "earliest", too.
+#: What members of every trade-off set go by, in the order in which tables and figures show them. Before them comes the
+#: "earliest" of paths in time, and before the knee what other objectives call their best path, `Objective.best`.
 NAMES = ("shortest", "safest", "smoothest", "knee")
 
 # By which share the shortest path found may be longer than the shortest of all before that is remarked on.
 _MUCH_LONGER = 0.05
 
-_LEAST = {"earliest": "arrival", "shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
+_LEAST = {"shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +48,7 @@ class PathRecord:
     index : int
         Its place in the set.
     names : tuple of str
-        Which of `NAMES` it goes by, or "earliest".
+        Which of `NAMES` it goes by, or which else, such as "earliest" or "widest".
     cells : numpy.ndarray of int, shape (n_cells, 2)
         Visited cells (x, y), start and goal included; of a path in time its cell at each tick.
     points : numpy.ndarray of float, shape (n_cells, 2), or None
@@ -71,7 +72,7 @@ class PathRecord:
         It is ``inf`` on an empty map, and never below 0 of a legal path on a grid that was inflated once, unless corners may be
         cut. Obstacles that move of paths in time are not among them. None on a map in cells.
     objectives : dict of str to float
-        The plain objectives of the problem.
+        The plain objectives of the problem, to be minimised: of what is maximised, such as the least clearance, the negative.
     genes : numpy.ndarray, shape (n_var,)
         The row of decision variables that codes it.
     grid : OccupancyGrid, optional
@@ -163,7 +164,7 @@ class TradeOffSet:
     measures : dict of str to numpy.ndarray, shape (N,)
         ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
         [cells], ``clearance_m`` and every other objective of the problem by its name; see `PathRecord`. Maps in cells have none
-        in metres.
+        in metres. Of what is maximised, such as the least clearance, it is the value itself, of which ``F`` holds the negative.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -175,7 +176,8 @@ class TradeOffSet:
     have the least length, vulnerability and turn *of the set*, whatever its objectives; of a problem with another `Risk`, the
     safest path is that of which this is least. Ties go to the path that is better in the first objective that differs. `knee`
     is defined in `knee_point`, on the objectives of the problem. Of paths in time, those of a `TimedPathProblem`, `earliest` is
-    the one that arrives first.
+    the one that arrives first. Other objectives may have a name for their best path: the "widest" has the largest least
+    clearance.
 
     References
     ----------
@@ -288,8 +290,8 @@ class TradeOffSet:
         found["clearance"] = np.minimum(found["clearance"], self.paths.mover_distance)
         if grid.resolution is not None:
             found["clearance_m"] = measures.clearance_m(self._cells)
-        for name, values in zip(self.objective_names, self.F.T, strict=True):
-            found.setdefault(name, values)
+        for objective, values in zip(self.problem.objectives, self.F.T, strict=True):
+            found.setdefault(objective.name, -values if objective.maximise else values)
         return found
 
     # -- members ------------------------------------------------------------------------------------------------------
@@ -301,12 +303,14 @@ class TradeOffSet:
 
     @functools.cached_property
     def named(self) -> dict[str, int]:
-        """Index of the path that goes by each of `NAMES`, and of paths in time that of the "earliest"."""
+        """Index of the path that goes by each of `NAMES`, and by what else its objectives call their best path."""
         # Paths stand in the order of their objectives, so the first of equal ones is the better.
         least_of = {**_LEAST, "safest": self._safety}
-        least = {name: int(np.argmin(self.measures[of])) for name, of in least_of.items() if of in self.measures}
-        found = {**least, "knee": knee_point(self.F)}
-        return {name: found[name] for name in names_for(self.objective_names)}
+        found = {name: int(np.argmin(self.measures[of])) for name, of in least_of.items() if of in self.measures}
+        for objective, values in zip(self.problem.objectives, self.F.T, strict=True):
+            found.setdefault(objective.best, int(np.argmin(values)))
+        found["knee"] = knee_point(self.F)
+        return {name: found[name] for name in names_for(self.problem.objectives)}
 
     @property
     def _safety(self) -> str:
@@ -514,9 +518,12 @@ class TradeOffSet:
         return write_whole(path, export.json_text(self).encode())
 
 
-def names_for(objectives: Collection[str]) -> tuple[str, ...]:
+def names_for(objectives: Sequence[Objective]) -> tuple[str, ...]:
     """Return the names that paths go by which are scored by these objectives, in the order in which they are shown."""
-    return tuple(name for name in ("earliest", *NAMES) if name in NAMES or _LEAST[name] in objectives)
+    best = dict.fromkeys(objective.best for objective in objectives if objective.best)
+    first = tuple(name for name in best if name == "earliest")
+    others = tuple(name for name in best if name not in ("earliest", *NAMES))
+    return (*first, *NAMES[:-1], *others, NAMES[-1])
 
 
 def check_set(trade_off: TradeOffSet) -> TradeOffSet:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath.decision.drawn import drawn_box, drawn_field
-from pymoo_gridpath.decision.export import shown_measures
+from pymoo_gridpath.decision.export import place_in_words, shown_measures
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.objectives import axis_of
@@ -41,10 +41,10 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     -------
     dict
         ``map`` (name, size in cells, corner: the cell of the whole map that is (0, 0) here, resolution or None, unit, origin),
-        ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, values with None for infinity), ``names`` (name
-        and path), ``occupied`` and ``grown`` (a bit a cell, row by row from the bottom; which of the first are so because
-        obstacles grew, or None), ``field`` (0 to 255, or None), ``counts``, ``starts`` and ``steps``
-        (see `packed_paths`), ``waypoints`` (see `packed_waypoints`), and texts.
+        ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, maximised or not, values with None for infinity),
+        ``names`` (name and path), ``occupied`` and ``grown`` (a bit a cell, row by row from the bottom; which of the first are
+        so because obstacles grew, or None), ``field`` (0 to 255, or None), ``counts``, ``starts`` and ``steps`` (see
+        `packed_paths`), ``waypoints`` (see `packed_waypoints`), and texts.
     """
     problem = trade_off.problem
     box = drawn_box(trade_off)
@@ -169,8 +169,8 @@ def _summary(trade_off, box: Box, resolution: float | None) -> str:
         size += f" of {resolution:g} m"
     if box != whole.whole:
         size += f", of which {box.x1 - box.x0} x {box.y1 - box.y0} are shown"
-    ends = f"from cell {problem.start[0]}, {problem.start[1]} to {problem.goal[0]}, {problem.goal[1]}"
-    return f"{counted(len(trade_off), 'trade-off path')} {ends}; {size}"
+    ends = " to ".join(place_in_words(whole, end) for end in (problem.start, problem.goal))
+    return f"{counted(len(trade_off), 'trade-off path')} from {ends}; {size}"
 
 
 def _columns(trade_off) -> list[dict]:
@@ -180,17 +180,18 @@ def _columns(trade_off) -> list[dict]:
         del measures["interfering_cells"]  # they cross none
     for objective in trade_off.problem.objectives:
         label, scale = axis_of(objective, trade_off.problem.grid)
-        same = f"{objective.name}_m" if objective.name == "length" and scale != 1.0 else objective.name
-        words = _LABELS.get(same) or _split(visible(label))
-        columns.append(_column(objective.name, words, True, trade_off.measures[objective.name] * scale))
-        measures.pop(same, None)
-    return columns + [_column(name, _LABELS.get(name) or (name, ""), False, values) for name, values in measures.items()]
+        words, unit = _LABELS.get(objective.name) or _split(visible(label))
+        in_metres = objective.in_cells and trade_off.problem.grid.resolution is not None
+        values = trade_off.measures[objective.name] * scale
+        columns.append(_column(objective.name, words, "m" if in_metres else unit, values, True, objective.maximise))
+        # Of the length there is the same in metres.
+        measures.pop("length_m" if in_metres and objective.name == "length" else objective.name, None)
+    return columns + [_column(name, *_LABELS.get(name, (name, "")), values) for name, values in measures.items()]
 
 
-def _column(key: str, words: tuple[str, str], objective: bool, values: np.ndarray) -> dict:
-    label, unit = words
-    numbers = [*map(_number, np.asarray(values).tolist())]
-    return {"key": key, "label": label, "unit": unit, "objective": objective, "values": numbers}
+def _column(key: str, label: str, unit: str, values: np.ndarray, objective: bool = False, maximise: bool = False) -> dict:
+    flags = {"objective": objective, "maximise": maximise}
+    return {"key": key, "label": label, "unit": unit, **flags, "values": [*map(_number, np.asarray(values).tolist())]}
 
 
 def _split(label: str) -> tuple[str, str]:

@@ -205,8 +205,8 @@ class _Film:
         labels, scales = self.units_of
         ax.set_xlim(low[0] * scales[0], high[0] * scales[0])
         ax.set_ylim(low[1] * scales[1], high[1] * scales[1])
-        ax.set_xlabel(labels[0])
-        ax.set_ylabel(labels[1])
+        for axis, objective, label in zip((ax.xaxis, ax.yaxis), self.problem.objectives[:2], labels[:2], strict=True):
+            axis.set_label_text(style.label_axis(axis, label, objective.maximise))
         ax.xaxis.set_major_locator(MaxNLocator(6))
         for side in ("top", "right"):
             ax.spines[side].set_visible(False)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.fields import check_variance
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.objectives import Length, Objective, Vulnerability
 from pymoo_gridpath.paths.timed import TimedCellPaths
@@ -20,6 +21,7 @@ class _Arrival(Objective):
 
     name = "arrival"
     label = "Arrival [ticks]"
+    best = "earliest"
 
     def __call__(self, paths, prepared):
         return _in_time(paths).arrival.astype(float)
@@ -34,6 +36,7 @@ class _TimedVulnerability(Vulnerability):
     label = "Vulnerability on the way"
 
     def __call__(self, paths, prepared):
+        assert self.variance is not None
         return _in_time(paths).vulnerability(self.variance)
 
 
@@ -116,11 +119,12 @@ class TimedPathProblem(GridPathProblem):
         penalty: float | None = None,
     ):
         checks.one_of("obstacles", obstacles, ("penalty", "constraint"))
-        objectives = _Arrival(), Length(), _TimedVulnerability(variance)
+        self.variance = check_variance(variance)
+        objectives = _Arrival(), Length(), _TimedVulnerability(self.variance)
         if not isinstance(movers, Trajectories):
             movers = Trajectories(movers)
         coding = TimedPaths(check_grid(grid), start, goal, movers, horizon)
-        self.movers, self.horizon, self.variance = movers, coding.horizon, objectives[2].variance
+        self.movers, self.horizon = movers, coding.horizon
         super().__init__(grid, start, goal, coding, objectives, obstacles, penalty)
 
     @property

@@ -17,8 +17,7 @@ def least_distances(occupied: np.ndarray, paths: Sequence[np.ndarray], box: Box)
     ----------
     occupied : numpy.ndarray of bool, shape (height, width)
     paths : sequence of numpy.ndarray of int, each of shape (n_cells, 2)
-        Cells (x, y), of which one and the next are neighbours; where a path that is not legal jumps, the middle of the jump
-        stands for the way.
+        Cells (x, y), of which one and the next are neighbours; where a path that is not legal jumps, its ends count alone.
     box : Box
         The part of the array that is looked at first; more of it is, if an obstacle beyond may be nearer.
 
@@ -34,17 +33,31 @@ def least_distances(occupied: np.ndarray, paths: Sequence[np.ndarray], box: Box)
     """
     if not len(paths):
         return np.empty(0)
-    # Twice the coordinates of centres and of middles of steps, all of them whole, each looked up once.
-    visited = [np.concatenate([2 * cells, cells[1:] + cells[:-1]]) for cells in paths]
+    cells, first = np.concatenate(paths), np.cumsum([0, *map(len, paths[:-1])])
+    step = np.diff(cells, axis=0)
+    diagonal = (np.abs(step) == 1).all(axis=1)
+    diagonal[first[1:] - 1] = False  # from one path to the next
+    near = Nearest(occupied[box.slices], box[:2])
+    at_cells = _distances(near, occupied, box, cells, 0.0)
+    halfway = _distances(near, occupied, box, np.minimum(cells[:-1], cells[1:])[diagonal], 0.5)
+    at_cells[:-1][diagonal] = np.minimum(at_cells[:-1][diagonal], halfway)
+    return np.minimum.reduceat(at_cells, first)
+
+
+def _distances(near: Nearest, occupied: np.ndarray, box: Box, cells: np.ndarray, aside: float) -> np.ndarray:
+    """Return the distance of each cell's centre, moved up and to the right, float, shape (n,); each is worked out once."""
     height, width = occupied.shape
-    places, where = np.unique(np.concatenate(visited) @ (1, 2 * width), return_inverse=True)
-    points = np.stack([places % (2 * width), places // (2 * width)], axis=1) / 2
-    whole = Box(0, 0, width, height)
-    distances = Nearest(occupied[box.slices], box[:2]).distances(points)
-    if (distances > _known_up_to(points, box, whole)).any():
-        distances = Nearest(occupied).distances(points)
-    first = np.cumsum([0, *map(len, visited[:-1])])
-    return np.minimum.reduceat(distances[where.reshape(-1)], first)
+    keys: np.ndarray = cells[:, 0] + width * cells[:, 1]
+    seen = np.zeros(occupied.size, dtype=bool)
+    seen[keys] = True
+    places = np.flatnonzero(seen)
+    points = np.stack([places % width, places // width], axis=1) + aside
+    found = near.distances(points)
+    if (found > _known_up_to(points, box, Box(0, 0, width, height))).any():
+        found = Nearest(occupied).distances(points)
+    distances = np.empty(occupied.size)  # of which only these pages are touched
+    distances[places] = found
+    return distances[keys]
 
 
 def _known_up_to(points: np.ndarray, box: Box, whole: Box) -> np.ndarray:

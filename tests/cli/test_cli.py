@@ -154,14 +154,14 @@ def test_steps_are_an_option_of_maps(tmp_path, free_map, capsys, options, steps,
     ("options", "stated"),
     [
         ([], {"name": "vulnerability", "variance": 0.5, "nearest": False, "cutoff": 0.0}),
-        (["--resolution", "0.05"], {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 0.001}),
+        (["--resolution", "0.05"], {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 1e-06}),
         (
             ["--resolution", "0.05", "--risk", "robot"],
-            {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 0.001},
+            {"name": "vulnerability", "sigma_m": 0.3, "nearest": True, "cutoff": 1e-06},
         ),
         (
             ["--resolution", "0.05", "--sigma-m", "2"],
-            {"name": "vulnerability", "sigma_m": 2.0, "nearest": True, "cutoff": 0.001},
+            {"name": "vulnerability", "sigma_m": 2.0, "nearest": True, "cutoff": 1e-06},
         ),
         (
             ["--resolution", "0.05", "--risk", "paper"],

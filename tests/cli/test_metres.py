@@ -122,7 +122,8 @@ def test_a_robot_that_is_there_gets_files_of_one_pose(hall, options, capsys):
     options += ["--waypoints", "csv,yaml,f1tenth", "--spacing", "0.1"]
     assert main(["plan", str(hall), *options, "-o", str(out), "--html", str(page)]) == 0
     printed = capsys.readouterr()
-    assert "1 trade-off path from (3, 3) to (3, 3)" in printed.out
+    place = "({:.6g}, {:.6g}) m".format(*load_map(hall).to_metres((3, 3)))
+    assert "from (3, 3) to (3, 3)\n" in printed.out and f"1 trade-off path from {place} to {place} on 'hall'" in printed.out
     (path,) = json.loads((out / "paths.json").read_text())["paths"]
     assert path["cells"] == [[3, 3]] and path["length"] == path["turn"] == 0 and path["clearance_m"] > 0
     with open(out / "paths.csv", newline="") as file:
