@@ -18,7 +18,16 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 # Colours of Okabe and Ito's palette, by what paths go by.
-PALETTE = {"shortest": "#0072B2", "safest": "#009E73", "smoothest": "#D55E00", "knee": "#CC3377", "earliest": "#56B4E9"}
+PALETTE = {
+    "shortest": "#0072B2",
+    "safest": "#009E73",
+    "smoothest": "#D55E00",
+    "knee": "#CC3377",
+    "earliest": "#56B4E9",
+    "widest": "#E69F00",
+    "cheapest": "#8C4A2F",
+    "flattest": "#7A7A00",
+}
 OCCUPIED, UNKNOWN, OTHERS, INK = "#3b3f45", "#b9bec6", "#8a8f98", "#111418"
 
 # The longer side of a picture is at most so many dots, and a cell is no larger than this.

@@ -52,6 +52,10 @@ class Along:
         """The sum of a field over the cells of each path, shape (n_paths,)."""
         return np.bincount(self._path, field[self._y, self._x], len(self.n_cells))
 
+    def least(self, field) -> np.ndarray:
+        """The least value of a field over the cells of each path, shape (n_paths,)."""
+        return np.minimum.reduceat(field[self._y, self._x], np.cumsum([0, *self.n_cells[:-1]]))
+
     def moves(self, costs) -> np.ndarray:
         """The sum of the costs of the moves of each path: a straight and a diagonal one, or one a heading and cell entered."""
         if isinstance(costs, tuple):

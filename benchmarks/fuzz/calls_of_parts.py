@@ -96,6 +96,9 @@ def _maps(w: World) -> dict[str, Call]:
             {"path": w.image, "threshold": 0.5, "unknown": "free", "corner_cutting": True, **pose},
         ),
         "read_movingai": (maps.read_movingai, {"path": w.movingai_map, "corner_cutting": True, **pose}),
+        "read_geotiff": (maps.read_geotiff, {"path": w.npy_map, "corner_cutting": True, "threshold": 0.5, "unknown": "free"}),
+        "read_raster": (maps.read_raster, {"path": w.npy_map}),
+        "read_terrain": (maps.read_terrain, {"path": w.movingai_map, "weights": {"S": 3.0}}),
         "read_npy": (maps.read_npy, {"path": w.npy_map, "corner_cutting": True, **pose}),
         "read_ros": (maps.read_ros, {"path": w.ros_map, "unknown": "occupied", "corner_cutting": True}),
         "read_scen": (maps.read_scen, {"path": w.scen, "grid": maps.read_movingai(w.movingai_map)}),
@@ -185,6 +188,7 @@ def _problems(w: World) -> dict[str, Call]:
         **{
             f"{type(one).__name__}.{method}": (getattr(one, method), given)
             for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.Inflation())
+            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.LeastClearance())
             for method, given in (
                 ("field", {"grid": w.grid}),
                 ("field_in", {"grid": w.grid, "box": w.grid.whole}),
@@ -204,6 +208,18 @@ def _problems(w: World) -> dict[str, Call]:
         "Inflation": (objectives.Inflation, {"cost_scaling_factor": 3.0, "inflation_radius": 0.5}),
         "Inflation.potential": (objectives.Inflation().potential, {"grid": w.grid, "box": w.grid.whole}),
         "Objective.on": (objectives.Turn().on, {"grid": w.grid}),
+        "Turn.field": (objectives.Turn().field, {"grid": w.grid}),
+        "Turn.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
+        "GroundCost": (objectives.GroundCost, {"cost": w.field, "weight": 2.0, "per": "entry", "name": "mud", "label": "Mud"}),
+        "Climb": (objectives.Climb, {"elevation": w.field, "name": "rise", "label": "Rise [m]"}),
+        **{
+            f"{type(one).__name__}.{method}": (getattr(one, method), {"grid": w.grid})
+            for one in (objectives.GroundCost(w.field), objectives.Climb(w.field))
+            for method in ("field", "moves")
+        },
+        "LeastClearance.field": (objectives.LeastClearance().field, {"grid": w.grid}),
+        "Vulnerability.field": (objectives.Vulnerability(2.0).field, {"grid": w.grid}),
+        "Vulnerability.field_in": (objectives.Vulnerability(2.0).field_in, {"grid": w.grid, "box": w.grid.whole}),
         # An objective of one's own, whose field and values are arguments too.
         "Objective": (partial(_own_objective, w), {"field": w.field, "factor": np.ones(5)}),
     }

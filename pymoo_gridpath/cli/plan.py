@@ -19,6 +19,7 @@ from pymoo_gridpath.cli.arguments import (
     operators,
     positive,
 )
+from pymoo_gridpath.cli.ground import add_ground, given_ground, ground_of
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
@@ -60,7 +61,7 @@ def add_plan_command(commands) -> None:
         type=lambda text: text.split(","),
         default=["length", "vulnerability"],
         metavar="A,B",
-        help="some of length, vulnerability, turn, inflation (default: length,vulnerability)",
+        help="some of length, vulnerability, turn, inflation, clearance (default: length,vulnerability)",
     )
     search.add_argument(
         "--risk",
@@ -96,6 +97,7 @@ def add_plan_command(commands) -> None:
     search.add_argument("--runs", type=positive, metavar="N", help="runs that are merged into one front (default: 1)")
     search.add_argument("--max-seconds", type=float, metavar="S", help="time of a planner; what it has found by then is kept")
     search.add_argument("--seed", type=natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
+    add_ground(plan)
     plan.add_argument(
         "-o",
         "--output",
@@ -130,9 +132,11 @@ def _plan(arguments) -> int:
     if arguments.units == "m":
         # Now, and not once the search has ended.
         grid.check_resolution("--units m")
-    start, goal = grid.check_query(*ends_of(grid, query_of(map_name), arguments.start, arguments.goal, option="--"))
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
+    grid, ground = ground_of(grid, map_name, arguments)
+    arguments.objectives = [*arguments.objectives, *ground]
+    start, goal = grid.check_query(*ends_of(grid, query_of(map_name), arguments.start, arguments.goal, option="--"))
     grid = grid.inflate(arguments.radius)
     check_grown(grid, arguments.radius, start, goal)
     objectives = _objectives(arguments, grid)
@@ -301,6 +305,7 @@ def _write_paths(results, arguments, name: str, source: dict, interrupted: bool)
         "robot_radius": arguments.radius,
         "source_map": source,
         "interrupted": interrupted,
+        **given_ground(arguments),
     }
     trade_off = TradeOffSet.from_results(results, settings=settings)
     files = [trade_off.to_csv(arguments.output / "paths.csv"), trade_off.to_json(arguments.output / "paths.json")]

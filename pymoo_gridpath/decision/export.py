@@ -60,6 +60,8 @@ def json_text(trade_off) -> str:
         **trade_off.meta,
         "objectives": list(trade_off.objective_names),
         "labels": {objective.name: objective.label for objective in problem.objectives},
+        "maximised": [objective.name for objective in problem.objectives if objective.maximise],
+        "best": {objective.name: objective.best for objective in problem.objectives if objective.best},
         "feasible": trade_off.feasible,
     }
     runs = json.dumps(runs_of(problem.grid.occupied))

@@ -35,10 +35,12 @@ class StoredObjective(Objective):
     Parameters
     ----------
     name, label : str
+    maximise : bool, default False
+    best : str, default ""
     """
 
-    def __init__(self, name: str, label: str):
-        self.name, self.label = name, label
+    def __init__(self, name: str, label: str, maximise: bool = False, best: str = ""):
+        self.name, self.label, self.maximise, self.best = name, label, maximise, best
 
     def __call__(self, paths, prepared):
         """Refuse to score paths."""
@@ -134,8 +136,8 @@ def _made(content: dict, problem) -> TradeOffSet:
     F = np.array([[_number(record["objectives"][name]) for name in problem.objective_names] for record in records])
     known = [name for name in _MEASURES if name not in _IN_METRES or problem.grid.resolution is not None]
     measures = {name: np.array([_number(record[name]) for record in records]) for name in known}
-    for name, values in zip(problem.objective_names, F.T, strict=True):
-        measures.setdefault(name, values)
+    for objective, values in zip(problem.objectives, F.T, strict=True):
+        measures.setdefault(objective.name, -values if objective.maximise else values)
     # What were whole numbers are whole numbers again.
     for name in ("turn", "interfering_cells"):
         measures[name] = measures[name].astype(np.int64)
@@ -177,7 +179,7 @@ def _problem(content: dict, grid: OccupancyGrid, start, goal) -> GridPathProblem
             "the paths are in time, among obstacles that move, of which the file does not hold all, expected the problem "
             "itself as load_json(path, problem)"
         )
-    objectives = [_objective(stated, content["labels"]) for stated in settings["objectives"]]
+    objectives = [_objective(stated, content) for stated in settings["objectives"]]
     cls: Any = REPRESENTATIONS[checks.known("representation", settings["representation"], REPRESENTATIONS)]
     takes = inspect.signature(cls).parameters
     options = {key: settings[key] for key in ("axis", "max_cells") if key in takes and settings[key] is not None}
@@ -193,7 +195,7 @@ def _problem(content: dict, grid: OccupancyGrid, start, goal) -> GridPathProblem
     )
 
 
-def _objective(stated: dict, labels: dict) -> Objective:
+def _objective(stated: dict, content: dict) -> Objective:
     """Return the objective of a name with the numbers that it had; one that cannot be made so knows its name alone."""
     name = checks.text("the name of an objective", stated["name"])
     options = {key: value for key, value in stated.items() if key != "name"}
@@ -202,4 +204,7 @@ def _objective(stated: dict, labels: dict) -> Objective:
         takes = inspect.signature(cls).parameters
         if set(options) <= set(takes) and all(one.default is not one.empty or key in options for key, one in takes.items()):
             return cls(**options)
-    return StoredObjective(name, checks.text("the label of an objective", labels.get(name, name)))
+    label = checks.text("the label of an objective", content["labels"].get(name, name))
+    # Files of before there were such objectives say nothing of them.
+    best = checks.text("the name of the best path", content.get("best", {}).get(name, ""))
+    return StoredObjective(name, label, name in content.get("maximised", ()), best)

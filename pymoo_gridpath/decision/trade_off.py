@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,18 +22,19 @@ from pymoo_gridpath.errors import GridPathError, counted
 from pymoo_gridpath.fields import BoxedField, clearance
 from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.pictures import png
 from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.versions import versions
 
-#: What members of a trade-off set go by, in the order in which tables and figures show them; of paths in time, one is the
-#: "earliest", too.
+#: What members of every trade-off set go by, in the order in which tables and figures show them. Before them comes the
+#: "earliest" of paths in time, and before the knee what other objectives call their best path, `Objective.best`.
 NAMES = ("shortest", "safest", "smoothest", "knee")
 
 # By which share the shortest path found may be longer than the shortest of all before that is remarked on.
 _MUCH_LONGER = 0.05
 
-_LEAST = {"earliest": "arrival", "shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
+_LEAST = {"shortest": "length", "safest": "vulnerability", "smoothest": "turn"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class PathRecord:
     index : int
         Its place in the set.
     names : tuple of str
-        Which of `NAMES` it goes by, or "earliest".
+        Which of `NAMES` it goes by, or which else, such as "earliest" or "widest".
     cells : numpy.ndarray of int, shape (n_cells, 2)
         Visited cells (x, y), start and goal included; of a path in time its cell at each tick.
     points : numpy.ndarray of float, shape (n_cells, 2), or None
@@ -64,7 +65,7 @@ class PathRecord:
         Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid. Of a path in time
         also from those of obstacles that move, at the same tick.
     objectives : dict of str to float
-        The plain objectives of the problem.
+        The plain objectives of the problem, to be minimised: of what is maximised, such as the least clearance, the negative.
     genes : numpy.ndarray, shape (n_var,)
         The row of decision variables that codes it.
     grid : OccupancyGrid, optional
@@ -114,7 +115,8 @@ class TradeOffSet:
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
         ``length`` [cells], ``length_m`` (but for maps in cells), ``vulnerability``, ``turn`` [degrees],
-        ``interfering_cells``, ``clearance`` [cells] and every other objective of the problem by its name.
+        ``interfering_cells``, ``clearance`` [cells] and every other objective of the problem by its name; of what is
+        maximised, such as the least clearance, itself, of which ``F`` holds the negative.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -126,7 +128,8 @@ class TradeOffSet:
     have the least length, vulnerability and turn *of the set*, whatever its objectives; of a problem with another `Risk`, the
     safest path is that of which this is least. Ties go to the path that is better in the first objective that differs. `knee`
     is defined in `knee_point`, on the objectives of the problem. Of paths in time, those of a `TimedPathProblem`, `earliest` is
-    the one that arrives first.
+    the one that arrives first. Other objectives may have a name for their best path: the "widest" has the largest least
+    clearance.
 
     References
     ----------
@@ -237,8 +240,8 @@ class TradeOffSet:
             "clearance": np.array([field.take(cells @ (1, grid.width)).min() for cells in self._cells]),
         }
         found["clearance"] = np.minimum(found["clearance"], self.paths.mover_distance)
-        for name, values in zip(self.objective_names, self.F.T, strict=True):
-            found.setdefault(name, values)
+        for objective, values in zip(self.problem.objectives, self.F.T, strict=True):
+            found.setdefault(objective.name, -values if objective.maximise else values)
         return found
 
     # -- members ------------------------------------------------------------------------------------------------------
@@ -250,12 +253,14 @@ class TradeOffSet:
 
     @functools.cached_property
     def named(self) -> dict[str, int]:
-        """Index of the path that goes by each of `NAMES`, and of paths in time that of the "earliest"."""
+        """Index of the path that goes by each of `NAMES`, and by what else its objectives call their best path."""
         # Paths stand in the order of their objectives, so the first of equal ones is the better.
         least_of = {**_LEAST, "safest": self._safety}
-        least = {name: int(np.argmin(self.measures[of])) for name, of in least_of.items() if of in self.measures}
-        found = {**least, "knee": knee_point(self.F)}
-        return {name: found[name] for name in names_for(self.objective_names)}
+        found = {name: int(np.argmin(self.measures[of])) for name, of in least_of.items() if of in self.measures}
+        for objective, values in zip(self.problem.objectives, self.F.T, strict=True):
+            found.setdefault(objective.best, int(np.argmin(values)))
+        found["knee"] = knee_point(self.F)
+        return {name: found[name] for name in names_for(self.problem.objectives)}
 
     @property
     def _safety(self) -> str:
@@ -454,9 +459,12 @@ class TradeOffSet:
         return write_whole(path, export.json_text(self).encode())
 
 
-def names_for(objectives: Collection[str]) -> tuple[str, ...]:
+def names_for(objectives: Sequence[Objective]) -> tuple[str, ...]:
     """Return the names that paths go by which are scored by these objectives, in the order in which they are shown."""
-    return tuple(name for name in ("earliest", *NAMES) if name in NAMES or _LEAST[name] in objectives)
+    best = dict.fromkeys(objective.best for objective in objectives if objective.best)
+    first = tuple(name for name in best if name == "earliest")
+    others = tuple(name for name in best if name not in ("earliest", *NAMES))
+    return (*first, *NAMES[:-1], *others, NAMES[-1])
 
 
 def check_set(trade_off: TradeOffSet) -> TradeOffSet:

@@ -193,8 +193,14 @@ def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.n
     name, turn = objective.name, objective.turn_cost
     if objective.combine != "sum":
         raise CapabilityError(
-            f"the objective {name!r} is the {objective.combine} of costs along a path, and no exact front is known of it; "
-            f"expected objectives that add up"
+            f"the objective {name!r} is the {objective.combine} of costs along a path, to be "
+            f"{'maximised' if objective.maximise else 'minimised'}, and no exact front is known of it; expected objectives "
+            f"that add up, or by which the worst cell of a path decides"
+        )
+    if objective.maximise:
+        raise CapabilityError(
+            f"the objective {name!r} is a sum along a path that is to be maximised, and no exact front is known of it; "
+            f"expected sums to be minimised"
         )
     cells, steps = field_of(objective, grid, moves.box), moves_of(objective, grid)
     if cells is None and steps is None and not turn:

@@ -15,11 +15,13 @@ from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
 from pymoo_gridpath.exact.labels import Front
+from pymoo_gridpath.exact.levels import Known, cell_levels, over_levels
 from pymoo_gridpath.exact.one import front_of_one
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.timed import exact_timed_front
 from pymoo_gridpath.exact.two import front_of_two
 from pymoo_gridpath.neighbourhood import HEADING_OF
+from pymoo_gridpath.objectives import Length, Objective
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.representations.base import max_cells, representation_of
@@ -83,7 +85,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     Parameters
     ----------
     problem : GridPathProblem
-        With one to three objectives that add up along a path: length, turn, and sums of costs of cells, moves and turns.
+        With one to three objectives that add up along a path: length, turn, and sums of costs of cells, moves and turns; or
+        some of which the worst cell of a path decides, such as the least clearance, and at most three others.
     budget : Budget, optional
         What the search may use; by default 70 % of the free memory, and as long as it takes.
 
@@ -94,8 +97,8 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     Raises
     ------
     CapabilityError
-        If there are more than three objectives, one does not add up, see `integer_costs`, or by one of them a detour may be the
-        better way and the representation codes none.
+        If there are more than three objectives besides those of which the worst cell decides, one of these does not add up, see
+        `integer_costs`, or by one of them a detour may be the better way and the representation codes none.
     GridPathError
         If the problem is no path problem, or a score is not the sum of what its objective says.
 
@@ -111,15 +114,30 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     checks.instance("budget", budget, Budget, optional=True)
     if problem.representation.timed:
         return _front_in_time(problem, budget)
-    if problem.n_obj > 3:
-        raise CapabilityError(f"the problem has {problem.n_obj} objectives, expected at most 3 for an exact front")
+    summed, worst = _kinds(problem)
+    if len(summed) > 3:
+        besides = " besides those of which the worst cell decides" if worst else ""
+        raise CapabilityError(f"the problem has {len(summed)} objectives{besides}, expected at most 3 for an exact front")
     if moves.n_cells >= _MOST_CELLS:
         raise CapabilityError(
             f"{moves.n_cells:,} cells of the grid are to be searched, expected fewer than {_MOST_CELLS:,} for an exact front"
         )
     meter = Meter(budget or Budget())
     usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)
-    parts = _search(problem, moves, usable, meter, set())
+    objectives: list[Objective] = [problem.objectives[k] for k in summed]
+    levels = [cell_levels(problem.objectives[k], problem.grid, moves.box) for k in worst]
+    if levels:
+        # What else is to be minimised is searched many times; of paths that are equal in all, the shortest will do.
+        objectives = [Known(one, problem.grid, moves.box) if one.additive else one for one in objectives or [Length()]]
+
+    def search(most=None):
+        def part(moves, usable):
+            return _search(problem, objectives, moves, usable, meter, set(), most)
+
+        ends = moves.index(problem.start), moves.index(problem.goal)
+        return over_levels(levels, moves, usable, ends, not summed and most is None, meter, part)
+
+    parts = search()
     paths, F, X = _merged(problem, parts, early=bool(meter.message))
     longest = max(map(len, paths), default=0)
     if longest > most:
@@ -127,7 +145,7 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         # What does not fit into a row may hide what does.
         within = [part.up_to(most) for part in parts]
         if not meter.message:
-            parts = _search(problem, moves, usable, meter, set(), most)
+            parts = search(most)
             within = within + parts if meter.message else parts
         paths, F, X = _merged(problem, within, early=bool(meter.message))
         # Other paths may have the same costs.
@@ -153,6 +171,14 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
 
 
+def _kinds(problem) -> tuple[list[int], list[int]]:
+    """Return the numbers of the objectives that are to add up, and of those of which the worst cell of a path decides."""
+    kinds: tuple[list[int], list[int]] = [], []
+    for k, objective in enumerate(problem.objectives):
+        kinds[objective.bottleneck].append(k)
+    return kinds
+
+
 def _front_in_time(problem, budget: Budget | None) -> ExactResult:
     """Return the front of a problem of paths in time."""
     coding, begin = problem.representation, working_seconds()
@@ -169,11 +195,11 @@ class _Part(NamedTuple):
     Attributes
     ----------
     paths : list of numpy.ndarray
-    F : numpy.ndarray, shape (N, n_obj)
-        What the search says of their objectives.
-    off : numpy.ndarray, shape (N, n_obj)
+    F : numpy.ndarray, shape (N, k)
+        What the search says of the objectives that add up, or of the length if none does.
+    off : numpy.ndarray, shape (N, k)
         By how much that may be off, where costs had to be rounded.
-    rounded : numpy.ndarray of bool, shape (n_obj,)
+    rounded : numpy.ndarray of bool, shape (k,)
         Whether they had to be.
     """
 
@@ -189,22 +215,28 @@ class _Part(NamedTuple):
 
 
 def _search(
-    problem, moves: Moves, usable: np.ndarray, meter: Meter, searched: set[bytes], most: int | None = None
+    problem,
+    objectives: list[Objective],
+    moves: Moves,
+    usable: np.ndarray,
+    meter: Meter,
+    searched: set[bytes],
+    most: int | None = None,
 ) -> list[_Part]:
     """Return paths over usable cells, bool, shape (n_cells,), among which is the front of those that visit at most ``most``.
 
     Where costs have to be rounded, the cheapest paths may lose most of theirs. These visit no cell that costs more than they
     do: a search among the cells that are left has a finer unit, and so on. Sets of cells that were searched are not again.
     """
-    costs = integer_costs(problem.objectives, problem.grid, moves, usable)
-    _check_detours(problem, costs)
+    costs = integer_costs(objectives, problem.grid, moves, usable)
+    _check_detours(problem, objectives, costs)
     start, goal = moves.index(problem.start), moves.index(problem.goal)
     order = costs.order
     if most is not None:
         front = _front_of_short_paths(moves, costs.take(order), start, goal, most - 1, meter)
-    elif problem.n_obj == 3:
+    elif len(objectives) == 3:
         front = front_of_three(moves, costs.take(order), start, goal, meter)
-    elif problem.n_obj == 1 and not costs.with_heading:
+    elif len(objectives) == 1 and not costs.with_heading:
         front = front_of_one(moves, costs, start, goal, meter)
     else:
         # A single objective that depends on headings is searched as two equal ones.
@@ -220,17 +252,17 @@ def _search(
             key = cheap.legal.tobytes() + within.tobytes()
             if key not in searched:
                 searched.add(key)
-                parts += _search(problem, cheap, within, meter, searched, most)
+                parts += _search(problem, objectives, cheap, within, meter, searched, most)
     return parts
 
 
-def _check_detours(problem, costs: Costs) -> None:
+def _check_detours(problem, objectives: list[Objective], costs: Costs) -> None:
     """Refuse costs by which a detour may be the better way, if the representation codes none."""
     if problem.representation.codes_detours or np.array_equal(costs.direct, DIRECT):
         return
-    k = next(k for k in range(problem.n_obj) if not np.array_equal(costs.take([k]).direct, DIRECT))
+    k = next(k for k in range(len(objectives)) if not np.array_equal(costs.take([k]).direct, DIRECT))
     raise CapabilityError(
-        f"by the objective {problem.objective_names[k]!r} two steps may cost less than the one that leads to the same "
+        f"by the objective {objectives[k].name!r} two steps may cost less than the one that leads to the same "
         f"cell, and the {problem.representation.name} representation codes that one alone; "
         f"expected the representation 'cells' for an exact front"
     )
@@ -306,29 +338,31 @@ def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray],
     direct way.
     """
     paths = [path for part in parts for path in part.paths]
-    expected, off = (np.concatenate([getattr(part, name) for part in parts]) for name in ("F", "off"))
+    summed, worst = _kinds(problem)
+    sums, off = (np.concatenate([getattr(part, name)[:, : len(summed)] for part in parts]) for name in ("F", "off"))
     coding, longest = problem.representation, max(map(len, paths), default=0)
     if longest > max_cells(problem):
         coding = CellSequence(problem.grid, problem.start, problem.goal, longest)
     X = coding.from_sequences(_sequences(paths))
     F = problem.score(coding.decode(X)).reshape(-1, problem.n_obj)
-    rounding = _SAME * np.abs(expected).max(axis=0, initial=0.0) + off
-    close = np.abs(F - expected) <= rounding
+    rounding = _SAME * np.abs(sums).max(axis=0, initial=0.0) + off
+    close = np.abs(F[:, summed] - sums) <= rounding
     if early and not close.all():
-        better = (expected + rounding >= F).all(axis=1) & ~close.all(axis=1)
-        expected[better], close[better] = F[better], True
+        better = (sums + rounding >= F[:, summed]).all(axis=1) & ~close.all(axis=1)
+        sums[better], close[better] = F[better][:, summed], True
     if not close.all():
-        wrong = problem.objective_names[np.flatnonzero(~close.all(axis=0))[0]]
+        wrong = problem.objective_names[summed[np.flatnonzero(~close.all(axis=0))[0]]]
         raise GridPathError(
             f"the objective {wrong!r} scores a path otherwise than by the sum of what it says of cells, moves and turns, "
             f"expected no field, moves and turn_cost then"
         )
     keep = np.lexsort(F.T[::-1])
-    rounded = np.any([part.rounded for part in parts], axis=0)
-    if len(F) and (early or rounded.any()):
+    rounded = np.any([part.rounded[: len(summed)] for part in parts], axis=0)
+    if len(F) and (early or rounded.any() or worst):
         # Of what was found in several parts, or before the search was over. Scores may differ by the order of their sum.
-        compared = expected[keep]
-        for k in np.flatnonzero(rounded):
+        compared = F[keep]
+        compared[:, summed] = sums[keep]
+        for k in np.array(summed)[rounded]:
             compared[:, k] = _ranks(F[keep, k])
         keep = keep[moocore.is_nondominated(compared)]
     if problem.obstacles == "limit":

@@ -36,9 +36,9 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     -------
     dict
         ``map`` (name, size in cells, corner: the cell of the whole map that is (0, 0) here, resolution or None, unit, origin),
-        ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, values with None for infinity), ``names`` (name
-        and path), ``occupied`` (a bit a cell, row by row from the bottom), ``field`` (0 to 255, or None), ``counts``,
-        ``starts`` and ``steps`` (see `packed_paths`), and texts.
+        ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, maximised or not, values with None for infinity),
+        ``names`` (name and path), ``occupied`` (a bit a cell, row by row from the bottom), ``field`` (0 to 255, or None),
+        ``counts``, ``starts`` and ``steps`` (see `packed_paths`), and texts.
     """
     problem = trade_off.problem
     box = drawn_box(trade_off)
@@ -152,6 +152,7 @@ def _columns(trade_off, resolution: float | None) -> list[dict]:
     if trade_off.feasible:
         others.remove("interfering_cells")  # they cross none
     labels = {objective.name: objective.label for objective in trade_off.problem.objectives}
+    maximised = [objective.name for objective in trade_off.problem.objectives if objective.maximise]
     columns = []
     for name in [*names, *others]:
         values = np.asarray(trade_off.measures[name])
@@ -162,9 +163,8 @@ def _columns(trade_off, resolution: float | None) -> list[dict]:
             label, unit = _LABELS[name]
         else:
             label, unit = _split(visible(labels.get(name, name)))
-        columns.append(
-            {"key": name, "label": label, "unit": unit, "objective": name in names, "values": [*map(_number, values.tolist())]}
-        )
+        flags = {"objective": name in names, "maximise": name in maximised}
+        columns.append({"key": name, "label": label, "unit": unit, **flags, "values": [*map(_number, values.tolist())]})
     return columns
 
 

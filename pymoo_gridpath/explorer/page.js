@@ -69,9 +69,10 @@ function choose(path, link = true) {
   map.canvas.setAttribute("aria-label", `Map of ${page.map.name} with ${title}: ${told(path)}`);
   byId("measures").tBodies[0].replaceChildren(
     ...columns.map((column) => {
-      const least = Math.min(...column.finite);
+      const best = column.maximise ? Math.max(...column.finite) : Math.min(...column.finite);
       const value = column.values[path];
-      const over = column.objective && value !== null && least > 0 ? `+${(100 * (value / least - 1)).toFixed(1)} %` : "";
+      const percent = (100 * Math.abs(value / best - 1)).toFixed(1);
+      const over = column.objective && value !== null && best > 0 ? `${column.maximise ? "\u2212" : "+"}${percent} %` : "";
       const row = element("tr", {}, element("th", { scope: "row" }, column.label));
       row.append(element("td", {}, quantity(column, value)), element("td", {}, over));
       row.classList.toggle("objective", column.objective);

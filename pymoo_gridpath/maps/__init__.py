@@ -7,10 +7,12 @@
 from pymoo_gridpath.maps._files import MAX_CELLS, check_size, make_grid, read_string
 from pymoo_gridpath.maps.array import read_npy
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat, Query, format_of
+from pymoo_gridpath.maps.geotiff import read_geotiff
 from pymoo_gridpath.maps.image import read_image
 from pymoo_gridpath.maps.load import load_map
-from pymoo_gridpath.maps.movingai import ScenQuery, read_movingai, read_scen
+from pymoo_gridpath.maps.movingai import ScenQuery, read_movingai, read_scen, read_terrain
 from pymoo_gridpath.maps.queries import query_of
+from pymoo_gridpath.maps.raster import read_raster
 from pymoo_gridpath.maps.ros import read_ros
 from pymoo_gridpath.maps.save import save_map
 from pymoo_gridpath.maps.shipped import ShippedMap, load_shipped, shipped_maps
@@ -30,12 +32,15 @@ __all__ = [
     "load_shipped",
     "make_grid",
     "query_of",
+    "read_geotiff",
     "read_image",
     "read_movingai",
     "read_npy",
+    "read_raster",
     "read_ros",
     "read_scen",
     "read_string",
+    "read_terrain",
     "read_text",
     "read_text_header",
     "save_map",

@@ -32,8 +32,12 @@ JPEG_CELLS_PER_BYTE = 512
 
 WIDTH, HEIGHT, BITS, COMPRESSION, PHOTOMETRIC, SAMPLES, ROWS, PLANAR = 256, 257, 258, 259, 262, 277, 278, 284
 STRIPS, TILE_WIDTH, TILE_LENGTH, TILES, SAMPLE_FORMAT, GDAL_NODATA = 273, 322, 323, 324, 339, 42113
+# What says where a raster lies: the keys that GDAL writes with any place, the side of a pixel, and a matrix.
+PLACE = (34735, 33550, 34264)
 Tags = dict[int, Any]
 """The values of a TIFF's tags: a tuple of whole numbers, or bytes."""
+
+_TIFF = rb"II[*+]\0|MM\0[*+]"
 
 _KINDS = {1: "B", 2: "s", 3: "H", 4: "I", 16: "Q"}
 # How many bytes a byte of the file can stand for at most. Facsimile codes need a bit for each row instead.
@@ -66,7 +70,7 @@ def check_before(path, file: BinaryIO) -> Tags:
         raise MapError(
             path, f"the file has {size} bytes of numbers as text, expected at most {MAX_PLAIN}, or a binary PNM file"
         )
-    if head in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"):
+    if re.match(_TIFF, head):
         try:
             tags = _read_tags(path, file, ">" if head[:1] == b"M" else "<", b"+" in head)
         except (struct.error, OverflowError):
@@ -74,6 +78,22 @@ def check_before(path, file: BinaryIO) -> Tags:
         _check_tiff(path, tags, size)
     file.seek(0)
     return tags
+
+
+def tags_of_tiff(path: str | os.PathLike[str]) -> Tags:
+    """Return the tags of a TIFF as far as they are whole numbers or text, of others their kind; none if it is no sound one."""
+    try:
+        with open(path, "rb") as file:
+            head = file.read(4)
+            if not re.match(_TIFF, head):
+                return {}
+            end, big = ">" if head[:1] == b"M" else "<", b"+" in head
+            tags = _read_tags(path, file, end, big)
+            file.seek(8 if big else 4)
+            known = _entries(path, file, end, big, _unpack(file, end + ("Q" if big else "I"))[0])
+            return {tag: (kind,) for tag, kind, *_ in known} | tags
+    except (OSError, MapError, struct.error, OverflowError):
+        return {}
 
 
 def _read_tags(path, file: BinaryIO, end: str, big: bool) -> Tags:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Sequence
+from typing import BinaryIO, Literal
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from pymoo_gridpath.maps._files import BLOCK, check_size, make_grid, require_fil
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
 
 MAGIC = b"\x93NUMPY"
+_DAMAGED = "the array cannot be read, expected a whole .npy file written by numpy.save"
 
 
 def read_npy(
@@ -54,7 +56,7 @@ def read_npy(
         raise
     except Exception:
         # A damaged header is parsed as Python text and can fail in almost any way.
-        raise MapError(path, "the array cannot be read, expected a whole .npy file written by numpy.save") from None
+        raise MapError(path, _DAMAGED) from None
     return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
 
 
@@ -74,24 +76,43 @@ class NumpyFormat(MapFormat):
         write_whole(path, data.getvalue())
 
 
+def read_numbers(path: str | os.PathLike[str]) -> np.ndarray:
+    """Return the numbers of a ``.npy`` file as floats, shape (height, width), or raise MapError."""
+    require_file(path)
+    try:
+        with open(path, "rb") as file:
+            shape, order, dtype = _header(path, file, "numbers")
+            return np.fromfile(file, dtype, shape[0] * shape[1]).astype(float).reshape(shape, order=order)
+    except (MapError, MemoryError):
+        raise
+    except Exception:
+        raise MapError(path, _DAMAGED) from None
+
+
+def _header(path, file: BinaryIO, expected: str) -> tuple[tuple[int, int], Literal["C", "F"], np.dtype]:
+    """Return the shape, the order and the type of an array, once the file is known to be as long as these say."""
+    if file.read(len(MAGIC)) != MAGIC:
+        raise MapError(path, "the file does not begin as a NumPy array, expected a .npy file written by numpy.save")
+    file.seek(0)
+    version = np.lib.format.read_magic(file)
+    read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, column_order, dtype = read_header(file)
+    if dtype.kind not in "biuf":
+        raise MapError(path, f"the array holds {checks.printable(dtype, 80)}, expected {expected}")
+    if len(shape) != 2:
+        raise MapError(path, f"the array has {len(shape)} dimensions, expected 2 (height, width)")
+    check_size(path, shape[1], shape[0])
+    found, needed = os.fstat(file.fileno()).st_size - file.tell(), shape[0] * shape[1] * dtype.itemsize
+    if found < needed:
+        raise MapError(path, f"the file has {found} bytes of cells, expected {needed}, those of a whole .npy file")
+    return shape, "F" if column_order else "C", dtype
+
+
 def _load(path) -> np.ndarray:
-    """Load the array in blocks, once the header has said that it is one of ours and the file is as long as it says."""
+    """Load the array in blocks."""
     with open(path, "rb") as file:
-        if file.read(len(MAGIC)) != MAGIC:
-            raise MapError(path, "the file does not begin as a NumPy array, expected a .npy file written by numpy.save")
-        file.seek(0)
-        version = np.lib.format.read_magic(file)
-        read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-        shape, column_order, dtype = read_header(file)
-        if dtype.kind not in "biuf":
-            raise MapError(path, f"the array holds {checks.printable(dtype, 80)}, expected booleans or the numbers 0 and 1")
-        if len(shape) != 2:
-            raise MapError(path, f"the array has {len(shape)} dimensions, expected 2 (height, width)")
-        check_size(path, shape[1], shape[0])
-        size, order = shape[0] * shape[1], "F" if column_order else "C"
-        found, needed = os.fstat(file.fileno()).st_size - file.tell(), size * dtype.itemsize
-        if found < needed:
-            raise MapError(path, f"the file has {found} bytes of cells, expected {needed}, those of a whole .npy file")
+        shape, order, dtype = _header(path, file, "booleans or the numbers 0 and 1")
+        size = shape[0] * shape[1]
         occupied = np.empty(size, dtype=bool)
         for start in range(0, size, BLOCK):
             values = np.fromfile(file, dtype, min(BLOCK, size - start))

@@ -15,7 +15,17 @@ from PIL import Image, ImageFile, UnidentifiedImageError
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, MapError, visible
 from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
-from pymoo_gridpath.maps._declared import CountedReader, Tags, check_before, check_exif, check_jpeg, check_png, nodata_of
+from pymoo_gridpath.maps._declared import (
+    PLACE,
+    CountedReader,
+    Tags,
+    check_before,
+    check_exif,
+    check_jpeg,
+    check_png,
+    nodata_of,
+    tags_of_tiff,
+)
 from pymoo_gridpath.maps._files import MAX_CELLS, blocks, check_size, check_unknown, make_grid, require_file, warn
 from pymoo_gridpath.maps._ros_yaml import yaml_of_image
 from pymoo_gridpath.maps.formats import MAP_FORMATS, MapFormat
@@ -178,7 +188,8 @@ class ImageFormat(MapFormat):
     read = staticmethod(read_image)  # pyright: ignore[reportAssignmentType]
 
     def matches(self, head, path):
-        return _MAGIC.match(head) is not None
+        # A raster that says where it lies is no mere drawing.
+        return _MAGIC.match(head) is not None and tags_of_tiff(path).keys().isdisjoint(PLACE)
 
 
 def read_pixels(path: str | os.PathLike[str], turn: bool = True) -> Pixels:

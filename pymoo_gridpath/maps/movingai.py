@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import MapError
@@ -92,14 +94,56 @@ def read_movingai(
     MapError
         If the file cannot be read or is not such a map; the message names the line.
     """
-    data = read_text_bytes(path).rstrip()
-    width, height, start, first = _read_header(path, data)
-    rows = data.count(b"\n", start) + 1 if start <= len(data) else 0
-    if rows != height:
-        line = first + min(height, rows) - (rows < height)
-        raise MapError(path, f"found {rows} rows below 'map', expected {height}", line)
-    occupied = parse_rows(path, data[start:], first, (width, height), PASSABLE, OCCUPIED)
+    width, height, body, first = _read_body(path)
+    occupied = parse_rows(path, body, first, (width, height), PASSABLE, OCCUPIED)
     return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution, origin=origin)
+
+
+def read_terrain(path: str | os.PathLike[str], weights: Mapping[str, float]) -> np.ndarray:
+    r"""Return what the terrain of a MovingAI map costs, by its letters.
+
+    The benchmarks give terrain no costs; who wants the swamp to be dear says how dear.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The ``.map`` file.
+    weights : mapping of str to float
+        Costs by letters, zero or more, such as ``{"S": 3}``; small letters mean the same as capitals. Ground and swamp that are
+        not named cost 1.
+
+    Returns
+    -------
+    numpy.ndarray of float, shape (height, width)
+        Row 0 at the bottom; NaN where neither the map's rules nor a weight let anybody walk. Where water or trees are given a
+        weight, a map to plan on has them free: ``grid.replace(occupied=np.isnan(costs))``.
+
+    Raises
+    ------
+    MapError
+        If the file cannot be read or is not such a map.
+    GridPathError
+        If a letter is none of the format's, or a weight no such number.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> file = pathlib.Path(tempfile.mkdtemp(), "pond.map")
+    >>> _ = file.write_text("type octile\nheight 2\nwidth 3\nmap\n.SW\n..T\n")
+    >>> read_terrain(file, {"S": 3, "W": 8}).tolist()
+    [[1.0, 1.0, nan], [1.0, 3.0, 8.0]]
+    """
+    checks.instance("weights", weights, Mapping)
+    costs = np.full(256, np.nan)
+    costs[list(PASSABLE.encode())] = 1.0
+    for letter, weight in weights.items():
+        checks.one_of("a letter of terrain", letter, PASSABLE + OCCUPIED)
+        cost = checks.number(f"the weight of {letter!r}", weight, 0.0, expected="a number, zero or more")
+        costs[[ord(letter.lower()), ord(letter.upper())]] = cost
+    width, height, body, first = _read_body(path)
+    parse_rows(path, body, first, (width, height), PASSABLE, OCCUPIED)
+    rows = [np.frombuffer(row.rstrip(), np.uint8) for row in body.split(b"\n")]
+    return costs[np.array(rows[::-1])]
 
 
 @MAP_FORMATS.register
@@ -162,6 +206,17 @@ def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -
             )
         queries.append(query)
     return queries
+
+
+def _read_body(path) -> tuple[int, int, bytes, int]:
+    """Return width, height, the rows, as many as the height says, and the line of the first."""
+    data = read_text_bytes(path).rstrip()
+    width, height, start, first = _read_header(path, data)
+    rows = data.count(b"\n", start) + 1 if start <= len(data) else 0
+    if rows != height:
+        line = first + min(height, rows) - (rows < height)
+        raise MapError(path, f"found {rows} rows below 'map', expected {height}", line)
+    return width, height, data[start:], first
 
 
 def _read_header(path, data: bytes) -> tuple[int, int, int, int]:

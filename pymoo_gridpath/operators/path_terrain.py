@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.objectives import moves_of, visiting_costs
+from pymoo_gridpath.objectives import Objective, avoiding_costs, field_of, moves_of, visiting_costs
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import Representation, max_cells, representation_of
+from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sequences import are_legal, mend
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, make_terrain
 
@@ -22,7 +23,9 @@ LEAST_WEIGHT = FULL_WEIGHT // 64
 
 
 def terrain_of(problem) -> Terrain:
-    """Return the terrain of a problem: the length, and what visiting each cell costs in its objectives, see `visiting_costs`.
+    """Return the terrain of a problem: the length, and what visiting each cell costs in its objectives.
+
+    See `visiting_costs`, and `avoiding_costs` of those of which the worst cell decides.
 
     Raises
     ------
@@ -42,9 +45,9 @@ def _known_of(problem) -> tuple[Representation, Terrain, list[int]]:
         )
     known = _TERRAINS.get(problem)
     if known is None or known[0] is not representation:
-        fields = [visiting_costs(objective, problem.grid, representation.box) for objective in problem.objectives]
         moves = representation.moves
         start, goal = moves.index(representation.start), moves.index(representation.goal)
+        fields = [_costs(objective, problem.grid, moves, start, goal) for objective in problem.objectives]
         terrain = make_terrain(moves, start, goal, [np.asarray(field) for field in fields if field is not None])
         terms = list(range(1, terrain.n_terms))
         # What tells straight steps from diagonal ones goes by the length.
@@ -52,6 +55,15 @@ def _known_of(problem) -> tuple[Representation, Terrain, list[int]]:
             terms.insert(0, 0)
         _TERRAINS[problem] = known = representation, terrain, terms
     return known
+
+
+def _costs(objective: Objective, grid, moves: Moves, start: int, goal: int):
+    """Return about what visiting each cell of the moves' box costs by an objective, or None."""
+    if not objective.bottleneck:
+        return visiting_costs(objective, grid, moves.box)
+    field = field_of(objective, grid, moves.box)
+    assert field is not None
+    return avoiding_costs(objective, moves, start, goal, field)
 
 
 def paths_of(problem, X: np.ndarray) -> Sequences:

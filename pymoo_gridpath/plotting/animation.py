@@ -199,9 +199,8 @@ class _Film:
         low, high = self.limits
         ax.set_xlim(low[0], high[0])
         ax.set_ylim(low[1], high[1])
-        labels = [objective.label for objective in self.problem.objectives]
-        ax.set_xlabel(labels[0])
-        ax.set_ylabel(labels[1])
+        for axis, objective in zip((ax.xaxis, ax.yaxis), self.problem.objectives[:2], strict=True):
+            axis.set_label_text(style.label_axis(axis, objective.label, objective.maximise))
         ax.xaxis.set_major_locator(MaxNLocator(6))
         for side in ("top", "right"):
             ax.spines[side].set_visible(False)

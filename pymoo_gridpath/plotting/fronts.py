@@ -32,8 +32,8 @@ def plot_front(
     reference : TradeOffSet or array_like of shape (K, n_obj), optional
         Another front in the same objectives, for instance the true one, drawn under it.
     which : sequence of str, optional
-        Names of the paths to mark, by default all that there are: "shortest", "safest", "smoothest", "knee" and, of paths in
-        time, "earliest".
+        Names of the paths to mark, by default all that there are: "shortest", "safest", "smoothest", "knee" and what the
+        objectives call their best path, such as "widest" or, of paths in time, "earliest".
     objectives : sequence of two or three str, optional
         Names of the objectives to draw, by default all. Two of three give a projection with the third as colour.
     reference_label : str, default "reference front"
@@ -129,11 +129,12 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         lines.append(stairs)
     rest = [k for k in range(trade_off.F.shape[1]) if k not in columns]
     if len(rest) == 1:
-        values = trade_off.F[:, rest[0]]
+        other_one = trade_off.problem.objectives[rest[0]]
+        values = trade_off.F[:, rest[0]] * (-1.0 if other_one.maximise else 1.0)
         low, high = style.span(values)
         look = {"c": values, "cmap": "cividis", "vmin": low, "vmax": high}
         dots = ax.scatter(*F.T, s=18, **look, zorder=3, label="trade-off paths")
-        bar = ax.figure.colorbar(dots, ax=ax, label=_label(trade_off, rest[0]), pad=0.02)
+        bar = ax.figure.colorbar(dots, ax=ax, label=other_one.label, pad=0.02)
         bar.outline.set_linewidth(0.5)  # pyright: ignore[reportCallIssue]
     else:
         ax.scatter(*F.T, s=14, color=style.OTHERS, zorder=3, label="trade-off paths")
@@ -142,8 +143,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         face = "none" if rest else look.color
         ax.plot(*F[index], look.marker, markersize=7, markerfacecolor=face, markeredgecolor=look.color, zorder=4)
         ax.lines[-1].set_label(", ".join(names))
-    ax.set_xlabel(_label(trade_off, columns[0]))
-    ax.set_ylabel(_label(trade_off, columns[1]))
+    _label_axes((ax.xaxis, ax.yaxis), trade_off, columns)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     style.widen_limits(ax)
@@ -179,9 +179,7 @@ def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> 
     for index, names in groups.items():
         look = style.style_of(names)
         ax.plot(*F[index][:, None], look.marker, color=look.color, markersize=7, label=", ".join(names), zorder=10)
-    ax.set_xlabel(_label(trade_off, columns[0]))
-    ax.set_ylabel(_label(trade_off, columns[1]))
-    ax.set_zlabel(_label(trade_off, columns[2]))
+    _label_axes((ax.xaxis, ax.yaxis, ax.zaxis), trade_off, columns)
     style.fix_ticks(ax)
     ax.auto_scale_xyz(*spans, had_data=True)
     ax.set_zlim(bottom=floor)
@@ -192,5 +190,7 @@ def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> 
     ax.legend(loc="upper left", bbox_to_anchor=(1.02, 0.92), borderaxespad=0.0)
 
 
-def _label(trade_off, column: int) -> str:
-    return trade_off.problem.objectives[column].label
+def _label_axes(axes, trade_off, columns: Sequence[int]) -> None:
+    for axis, column in zip(axes, columns, strict=True):
+        objective = trade_off.problem.objectives[column]
+        axis.set_label_text(style.label_axis(axis, objective.label, objective.maximise))

@@ -17,9 +17,9 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import names_for
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.pictures import INK, PALETTE
 from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
 from pymoo_gridpath.pictures import OTHERS as OTHERS
-from pymoo_gridpath.pictures import PALETTE
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,12 @@ NAME_STYLES = {
     "safest": NameStyle(PALETTE["safest"], (0, (5, 1.6)), "D"),
     "smoothest": NameStyle(PALETTE["smoothest"], (0, (1.2, 1.2)), "^"),
     "knee": NameStyle(PALETTE["knee"], (0, (6, 1.5, 1.2, 1.5)), "o"),
+    "widest": NameStyle(PALETTE["widest"], (0, (3, 1)), "P"),
+    "cheapest": NameStyle(PALETTE["cheapest"], (0, (4, 1, 1, 1, 1, 1)), "p"),
+    "flattest": NameStyle(PALETTE["flattest"], (0, (2, 1.6)), "h"),
 }
+# Of names that the objectives of others have for their best path.
+OTHER_NAME = NameStyle(INK, (0, (3, 1, 1, 1, 1, 1)), "X")
 POTENTIAL = ["#ffffff", "#f3d9a4"]  # a list: of a tuple of two, matplotlib 3.8.0 takes the second for an opacity
 REFERENCE = "#5b5f66"
 WARNING = "#b00020"
@@ -77,7 +82,7 @@ _OWN: weakref.WeakSet[Axes] = weakref.WeakSet()
 
 def style_of(names) -> NameStyle:
     """Return the style of a path that goes by one or more names: that of the first."""
-    return NAME_STYLES[names[0]]
+    return NAME_STYLES.get(names[0], OTHER_NAME)
 
 
 def figure_style(ax: Axes | None):
@@ -146,6 +151,27 @@ def widen_limits(ax: Axes) -> None:
             formatter.set_useOffset(False)
 
 
+class _Itself(ScalarFormatter):
+    """Labels of the values of which an axis holds the negative."""
+
+    def __init__(self):
+        super().__init__(useOffset=False)
+
+    def set_locs(self, locs):
+        super().set_locs([0.0 - value for value in locs])
+
+    def __call__(self, x, pos=None):
+        return super().__call__(0.0 - x, pos)
+
+
+def label_axis(axis, label: str, maximise: bool) -> str:
+    """Return what to write beside an axis; of what is maximised it holds the negative, and its ticks say the value itself."""
+    if not maximise:
+        return label
+    axis.set_major_formatter(_Itself())
+    return f"{label}, more is better"
+
+
 def check_units(units: str, grid: OccupancyGrid) -> None:
     """Refuse units of a map that are none, and metres of a map that has none."""
     if not (isinstance(units, str) and units in ("cells", "m")):
@@ -169,6 +195,6 @@ def warn_infeasible(ax: Axes, trade_off) -> None:
 def by_path(trade_off, which) -> dict[int, list[str]]:
     """Return the names to show, by default all, by the index of the path that bears them, in the order of the names."""
     groups: dict[int, list[str]] = {}
-    for name in names_for(trade_off.objective_names) if which is None else checks.names("which", which):
+    for name in names_for(trade_off.problem.objectives) if which is None else checks.names("which", which):
         groups.setdefault(trade_off.index(name), []).append(name)
     return groups

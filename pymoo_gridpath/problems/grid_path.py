@@ -13,12 +13,21 @@ from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted, visible
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
-from pymoo_gridpath.grid import OccupancyGrid, check_grid
-from pymoo_gridpath.objectives import Objective, boxed_field_of, make_objectives, prepared, visiting_costs
+from pymoo_gridpath.fields import BoxedField
+from pymoo_gridpath.grid import Box, Cell, OccupancyGrid, check_grid
+from pymoo_gridpath.objectives import (
+    Objective,
+    avoiding_costs,
+    boxed_field_of,
+    make_objectives,
+    prepared,
+    visiting_costs,
+)
 from pymoo_gridpath.paths import Paths, check_paths
 from pymoo_gridpath.paths.frame import Axis, check_axis
 from pymoo_gridpath.representations import Representation, default_representation, make_representation
 from pymoo_gridpath.representations.base import check_representation
+from pymoo_gridpath.search import Moves
 
 Obstacles = Literal["penalty", "constraint", "limit"]
 # Chosen by measurement on the shipped maps and random grids, see the parameter.
@@ -58,8 +67,9 @@ class GridPathProblem(Problem):
         "integer" where corners may be cut, which is the world of the paper, or an ``axis`` is given, see
         `default_representation`.
     objectives : sequence of str or Objective, default ("length", "vulnerability")
-        What is minimised, in this order; names are "length", "vulnerability", "turn" and "inflation". The vulnerability is in
-        metres on a map that states its resolution, and the paper's on a map in cells, see `Vulnerability`.
+        What is minimised, in this order; names are "length", "vulnerability", "turn", "inflation", and "clearance", the least
+        clearance of a path, of which ``F`` holds the negative. The vulnerability is in metres on a map that states its
+        resolution, and the paper's on a map in cells, see `Vulnerability`.
     obstacles : {"penalty", "constraint", "limit"}, default "penalty"
         How paths are kept off obstacles.
 
@@ -95,7 +105,8 @@ class GridPathProblem(Problem):
     -----
     ``pareto_front()`` and ``pareto_set()`` return the exact front of the legal paths, without penalties, and a path for each
     point (see `exact_front`; the first call computes both). They return None if an objective does not add up along a path,
-    that is, if it is neither length nor turn and has no field; if there are more than three objectives; or, with a warning,
+    that is, if it is neither length nor turn and has no field, nor goes by the worst cell; if there are more than three that
+    add up; or, with a warning,
     if ``max_seconds`` do not suffice: 2 by default, of wall time and without compiling, because pymoo asks for the front of its
     own accord where it prints progress (``verbose=True``). Large maps and three objectives need more. What did not suffice once
     is not tried again; only a call with more seconds is a new attempt.
@@ -161,9 +172,8 @@ class GridPathProblem(Problem):
             )
         if isinstance(representation, str | type):
             costs = [
-                visiting_costs(objective, grid, grid.whole, field)
+                _row_costs(objective, grid, box, self.start, self.goal, field)
                 for objective, field in zip(self.objectives, fields, strict=True)
-                if objective.additive
             ]
             turning = any(objective.turn_cost for objective in self.objectives)
             known = [cost for cost in costs if cost is not None]
@@ -373,6 +383,18 @@ class GridPathProblem(Problem):
     def _measure(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         paths = check_paths(self.decode(X))
         return self._scores(paths), paths.turn, paths.interfering_cells
+
+
+def _row_costs(objective: Objective, grid: OccupancyGrid, box: Box, start: Cell, goal: Cell, field):
+    """Return costs of cells whose cheapest paths tell how long paths become that are good by an objective, or None."""
+    if objective.additive:
+        return visiting_costs(objective, grid, grid.whole, field)
+    if not objective.bottleneck:
+        return None
+    moves, costs = Moves(grid, box=box), np.zeros(grid.shape)
+    inside = field.inside if isinstance(field, BoxedField) else np.asarray(field)
+    costs[box.slices] = avoiding_costs(objective, moves, moves.index(start), moves.index(goal), inside)
+    return costs
 
 
 def _maker_without_repair(algorithm) -> str:

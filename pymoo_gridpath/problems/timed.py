@@ -21,6 +21,7 @@ class _Arrival(Objective):
 
     name = "arrival"
     label = "Arrival [ticks]"
+    best = "earliest"
 
     def __call__(self, paths, prepared):
         return _in_time(paths).arrival.astype(float)

@@ -263,21 +263,23 @@ def test_skipping_detours_as_for_costs_of_cells_would_lose_points(monkeypatch):
 def test_what_does_not_add_up_has_no_exact_front_and_is_scored():
     class Worst(Objective):
         name = label = "worst"
-        combine = "greatest"
+        combine, maximise = "greatest", True
 
         def field(self, grid):
             return np.arange(25.0).reshape(5, 5)
 
     class Best(Worst):
-        combine = "least"
+        combine, maximise = "least", False
 
     for representation in ("cells", "integer"):
         problem = GridPathProblem(OccupancyGrid(np.zeros((5, 5))), (1, 0), (4, 4), representation, ["length", Worst()])
-        with pytest.raises(CapabilityError, match="'worst' is the greatest of costs along a path"):
+        with pytest.raises(
+            CapabilityError, match="'worst' is the greatest of costs along a path, to be maximised, and no exact"
+        ):
             exact_front(problem)
         assert problem.pareto_front() is None
         X = GridPathProblem(problem.grid, (1, 0), (4, 4), representation).pareto_set()
-        assert problem.evaluate(X)[:, 1].tolist() == [24.0] * len(X)
+        assert problem.evaluate(X)[:, 1].tolist() == [-24.0] * len(X)
         least = GridPathProblem(problem.grid, (1, 0), (4, 4), representation, ["length", Best()])
         assert least.evaluate(X)[:, 1].tolist() == [1.0] * len(X)
 

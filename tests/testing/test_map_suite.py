@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tifffile
 from PIL import Image
 
 from pymoo_gridpath.errors import MapError
@@ -23,6 +24,7 @@ from pymoo_gridpath.maps import (
     read_string,
 )
 from pymoo_gridpath.maps.array import NumpyFormat
+from pymoo_gridpath.maps.geotiff import GeoTiffFormat
 from pymoo_gridpath.maps.image import ImageFormat
 from pymoo_gridpath.maps.movingai import MovingAIFormat
 from pymoo_gridpath.maps.ros import RosFormat
@@ -52,6 +54,14 @@ class TestImage(MapFormatSuite):
 
     def write(self, path, grid):
         shades_of(grid).save(path)
+
+
+class TestGeoTiff(MapFormatSuite):
+    format = GeoTiffFormat
+
+    def write(self, path, grid):
+        tags = [(33550, "d", 3, (0.5, 0.5, 0.0)), (33922, "d", 6, (0.0, 0.0, 0.0, 10.0, 20.0, 0.0))]
+        tifffile.imwrite(path, np.where(grid.occupied[::-1], 100, 0).astype(np.int8), extratags=[(*tag, False) for tag in tags])
 
 
 class TestMovingAI(MapFormatSuite):
@@ -85,7 +95,16 @@ class TestText(MapFormatSuite):
 
 def test_all_formats_are_tested():
     tested = {suite.format for suite in MapFormatSuite.__subclasses__() if suite.__module__ == __name__}
-    assert tested == {NumpyFormat, ImageFormat, MovingAIFormat, RosFormat, TextFormat, Runs, MAP_FORMATS["rooms"]}
+    assert tested == {
+        NumpyFormat,
+        GeoTiffFormat,
+        ImageFormat,
+        MovingAIFormat,
+        RosFormat,
+        TextFormat,
+        Runs,
+        MAP_FORMATS["rooms"],
+    }
 
 
 # -- a format of someone else's ---------------------------------------------------------------------------------------

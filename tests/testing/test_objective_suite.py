@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pymoo_gridpath.neighbourhood import HEADING_OF, HEADINGS
-from pymoo_gridpath.objectives import Length, Objective, Turn, Vulnerability
+from pymoo_gridpath.objectives import LeastClearance, Length, Objective, Turn, Vulnerability
 from pymoo_gridpath.testing.objectives import ObjectiveSuite
 
 
@@ -52,6 +52,18 @@ class Highest(Objective):
         return heights(grid)
 
 
+class Lowest(Highest):
+    """The best cell decides: a detour to it is worth while, and no front of that is known."""
+
+    name, combine = "lowest", "least"
+
+
+class Gain(Highest):
+    """A sum to be maximised: paths would not end."""
+
+    name, combine, maximise = "gain", "sum", True
+
+
 class Cells(Objective):
     """A rule of its own, that nothing is known of."""
 
@@ -85,6 +97,18 @@ class TestHighest(ObjectiveSuite):
     objective = Highest()
 
 
+class TestLowest(ObjectiveSuite):
+    objective = Lowest()
+
+
+class TestGain(ObjectiveSuite):
+    objective = Gain()
+
+
+class TestLeastClearance(ObjectiveSuite):
+    objective = LeastClearance()
+
+
 class TestRuleOfItsOwn(ObjectiveSuite):
     objective = Cells()
 
@@ -109,6 +133,13 @@ class FromTheCellLeft(Climb):
             steps = slice(begin, end - 1)
             total.append(prepared.moves.reshape(8, -1)[heading[steps], cells[steps]].sum())
         return np.array(total)
+
+
+class NotNegated(LeastClearance):
+    """Says that more is better, and scores as if less were."""
+
+    def __call__(self, paths, prepared):
+        return -super().__call__(paths, prepared)
 
 
 class Transposed(Work):
@@ -173,7 +204,21 @@ class OneWay(Climb):
         return cost
 
 
-FAULTS = [Twice, FromTheCellLeft, Transposed, Negative, Endless, Shifted, Relative, Drawn, Unlabelled, Local, Loud, OneWay]
+FAULTS = [
+    Twice,
+    FromTheCellLeft,
+    Transposed,
+    Negative,
+    Endless,
+    Shifted,
+    Relative,
+    Drawn,
+    Unlabelled,
+    Local,
+    Loud,
+    OneWay,
+    NotNegated,
+]
 
 
 def is_caught(objective):

@@ -264,7 +264,9 @@ def _problem(problem: Any) -> dict[str, Any]:
         "start": list(problem.start),
         "goal": list(problem.goal),
         "objectives": [
-            {"class": _path(one), "arguments": {}, "name": one.name, "label": one.label} for one in problem.objectives
+            {"class": _path(one), "arguments": {}, "name": one.name, "label": one.label}
+            | ({"maximise": True} if one.maximise else {})
+            for one in problem.objectives
         ],
         "representation": {"class": problem.representation.name, "arguments": {}, "paper": False, "monotone": False},
         "obstacles": problem.obstacles,

@@ -27,7 +27,7 @@ def objective_entry(form: Any) -> Any:
     """Return an objective of a study in canonical form; one that has a name in this package alone keeps that."""
     given = own.read(form, OBJECTIVE, ("objectives",))
     made = given.cls(**given.arguments)
-    content = own.entry(given, label=made.label)
+    content = own.entry(given, label=made.label, **({"maximise": True} if made.maximise else {}))
     return content if isinstance(content, str) else {**content, "name": made.name}
 
 
@@ -39,6 +39,11 @@ def objective_name(content: Any) -> str:
 def objective_label(content: Any) -> str:
     """Return how figures call an objective in canonical form, with its unit."""
     return of_package(Objective)[content].label if isinstance(content, str) else content["label"]
+
+
+def is_maximised(content: Any) -> bool:
+    """Whether an objective in canonical form is maximised, so that runs hold its negative."""
+    return of_package(Objective)[content].maximise if isinstance(content, str) else content.get("maximise", False)
 
 
 def representation_entry(form: Any) -> Any:

@@ -12,10 +12,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from pymoo_gridpath.plotting.style import label_axis
 from pymoo_gridpath.quality import SAME, ReferenceFront, merge_fronts
 from pymoo_gridpath.study.report.figures.style import REFERENCE, AlgorithmStyle, legend_above, panel_figure, panel_title
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.specification.kinds import objective_label
+from pymoo_gridpath.study.specification.kinds import is_maximised, objective_label
 
 # Lines of attainment surfaces, which differ in grey print too.
 _BENEATH: dict[str, Any] = {"color": "#bcc0c6", "linewidth": 2.8, "solid_joinstyle": "miter"}
@@ -167,8 +168,12 @@ def _height(front: np.ndarray, x: np.ndarray, top: float) -> np.ndarray:
 
 def _finish(results: Results, problem: int, figure: Figure, axes, low: np.ndarray, high: np.ndarray) -> None:
     names = results.plan.problems[problem].spec["objectives"][:2]
-    labels = [objective_label(name) for name in names]
+    labels = ["", ""]
     for ax in axes:
+        labels = [
+            label_axis(axis, objective_label(name), is_maximised(name))
+            for axis, name in zip((ax.xaxis, ax.yaxis), names, strict=True)
+        ]
         ax.set_xlim(low[0], high[0])
         ax.set_ylim(low[1], high[1])
         ax.xaxis.set_major_locator(MaxNLocator(3))

@@ -1,12 +1,11 @@
-"""What a path is scored by: each objective maps a batch of paths to an array of N numbers to be minimised."""
+"""What an objective is, those of the paper, and what is asked of any."""
 
 from __future__ import annotations
 
-import copy
 import functools
-from abc import ABC, abstractmethod
+from abc import ABC
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,23 +13,22 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import (
-    Bell,
     BoxedField,
     check_costs,
-    check_inflation,
-    given_bell,
-    inflation_cost,
-    obstacle_potential,
-    settled_bell,
 )
 from pymoo_gridpath.grid import SQRT2, Box, OccupancyGrid, check_box, check_grid
 from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths import TURN_UNIT, Paths
 from pymoo_gridpath.registry import Registry
+from pymoo_gridpath.search.bottleneck import best_level
 from pymoo_gridpath.search.moves import Moves
 
 #: What the costs of a path may be put together by.
 COMBINATIONS = ("sum", "least", "greatest")
+
+# How many times as much the worst cells cost as those that are a little worse than need be, and at most from level to level:
+# chosen by measurement of what searches find of exact fronts.
+_STEEPNESS, _MOST_GROWTH = 2.0**8, 4.0
 
 #: What a step costs: the same wherever it is, straight or diagonal, or as an array by [heading, y, x] of the cell entered.
 MoveCosts = tuple[float, float] | np.ndarray
@@ -68,8 +66,12 @@ class Objective(ABC):
     turn_cost : float
         Cost of 45 degrees of turning.
     combine : {"sum", "least", "greatest"}
-        What a path has of the costs along it: their sum, or the least or the greatest of the cells' costs. Only sums have an
-        exact front.
+        What a path has of the costs along it: their sum, or the least or the greatest of the cells' costs.
+    maximise : bool
+        Whether more of that is better. Objectives are minimised, so the score of a path is the negative then; tables and
+        figures show it as it is. A ``__call__`` of its own returns the negative, too.
+    best : str
+        What the best path of a set by this objective goes by, such as "shortest"; empty if it has no name of its own.
     penalty_unit : float
         What a penalty of 1 adds to it: 1, or the objective's own step where it counts in larger ones.
     local : bool
@@ -110,6 +112,8 @@ class Objective(ABC):
     label: str
     turn_cost: float = 0.0
     combine: str = "sum"
+    maximise: bool = False
+    best: str = ""
     penalty_unit: float = 1.0
     local: bool = False
 
@@ -148,10 +152,17 @@ class Objective(ABC):
 
     @property
     def additive(self) -> bool:
-        """Whether it adds up costs that it names, so that there is an exact front."""
+        """Whether it adds up costs that it names, less being better, so that there is an exact front."""
         cls = type(self)
         names_some = cls.field is not Objective.field or cls.moves is not Objective.moves or self.turn_cost != 0.0
-        return self.combine == "sum" and names_some
+        return self.combine == "sum" and names_some and not self.maximise
+
+    @property
+    def bottleneck(self) -> bool:
+        """Whether the worst cell of a path decides, as where the least clearance is maximised: there is an exact front then."""
+        cls = type(self)
+        worst = "least" if self.maximise else "greatest"
+        return self.combine == worst and cls.field is not Objective.field and cls.__call__ is Objective.__call__
 
     def prepare(self, representation, grid: OccupancyGrid) -> Prepared:
         """Return what the objective says of a grid in the form in which paths of a representation add it up.
@@ -180,7 +191,11 @@ class Objective(ABC):
         -------
         numpy.ndarray of float, shape (N,)
         """
-        field, moves = prepared
+        total = self._total(paths, *prepared)
+        return -total if self.maximise else total
+
+    def _total(self, paths: Paths, field, moves) -> np.ndarray:
+        """Return what paths have of the costs along them."""
         if self.combine != "sum":
             cells, offsets = paths.sequences
             chosen = np.minimum if self.combine == "least" else np.maximum
@@ -214,151 +229,10 @@ class Length(Objective):
 
     name = "length"
     label = "Path length [cells]"
+    best = "shortest"
 
     def moves(self, grid):
         return 1.0, SQRT2
-
-
-class Risk(Objective):
-    """How near to obstacles a path leads: the sum of a potential, of the obstacles in reach, over the visited cells.
-
-    The safest of the paths of a problem is the one of which its risk is least.
-
-    Attributes
-    ----------
-    wider : str
-        How one of a wider reach is had, in words, for those who find nothing to choose from.
-    """
-
-    wider: str = ""
-
-    @abstractmethod
-    def potential(self, grid: OccupancyGrid, box: Box | None = None) -> np.ndarray:
-        """Return the potential of the obstacles of a map, or the part in a box, shape (height, width) of the map or the box."""
-
-    def field(self, grid):
-        return self.potential(grid)
-
-    @property
-    def local(self) -> bool:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """Whether the field is the potential: a class made from this one may have another."""
-        return type(self).field is Risk.field
-
-    def field_in(self, grid, box):
-        """Return the potential in a box, from the obstacles in reach."""
-        return self.potential(grid, box) if self.local else super().field_in(grid, box)
-
-
-@OBJECTIVES.register
-class Vulnerability(Risk):
-    """Sum of the obstacles' potential over the visited cells, start and goal included.
-
-    What is not given the map decides, see `pymoo_gridpath.fields.obstacle_potential`: on one that states its resolution the
-    nearest obstacle counts alone, with a standard deviation of 0.3 m; on a map in cells it is the paper's sum of bells, which
-    ``Vulnerability(variance=0.5)`` is on all maps.
-
-    Parameters
-    ----------
-    variance : float, optional
-        Variance of the bell-shaped potential in squared cells, see `pymoo_gridpath.fields.obstacle_potential`.
-    sigma_m : float, optional
-        Its standard deviation in metres, in place of the variance.
-    nearest : bool, optional
-        Whether the nearest obstacle counts alone; by default unless the variance is given, or the map is in cells.
-    cutoff : float, optional
-        Potentials below this are 0; the peak of a bell is 1. By default 1e-6 where the nearest obstacle counts alone, else 0.
-
-    Raises
-    ------
-    GridError
-        If the variance or standard deviation is no positive number or both are given, or the cutoff is not from 0 to below 1.
-
-    References
-    ----------
-    Ahmed and Deb (2013), section 3.2.
-
-    Examples
-    --------
-    >>> grid = OccupancyGrid([[0, 0, 0], [0, 1, 0]], resolution=0.05)
-    >>> Vulnerability().on(grid)
-    Vulnerability(sigma_m=0.3, nearest=True, cutoff=1e-06)
-    >>> Vulnerability().on(grid.replace(resolution=None))
-    Vulnerability(variance=0.5, nearest=False, cutoff=0.0)
-    """
-
-    name = "vulnerability"
-    label = "Path vulnerability"
-
-    # Attributes of an object are those that are given, or decided by a map.
-    variance: float | None = None
-    sigma_m: float | None = None
-    nearest: bool | None = None
-    cutoff: float | None = None
-
-    def __init__(
-        self,
-        variance: float | None = None,
-        sigma_m: float | None = None,
-        nearest: bool | None = None,
-        cutoff: float | None = None,
-    ):
-        vars(self).update(given_bell(variance, sigma_m, nearest, cutoff))
-
-    @property
-    def _bell(self) -> dict[str, Any]:
-        return {name: getattr(self, name) for name in Bell._fields}
-
-    def on(self, grid):
-        """Return the objective with the bell written out that it has on a map."""
-        settled = settled_bell(grid, **self._bell)._asdict()
-        if settled == self._bell:
-            return self
-        made = copy.copy(self)
-        vars(made).update({name: value for name, value in settled.items() if value is not None})
-        return made
-
-    @property
-    def wider(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """How a wider one is had."""
-        if self.sigma_m is not None:
-            return f"a wider risk, such as sigma_m={2 * self.sigma_m:g} (--sigma-m {2 * self.sigma_m:g})"
-        return "" if self.variance is None else f"a wider risk, such as variance={4 * self.variance:g}"
-
-    def potential(self, grid, box=None):
-        """Return the potential of the obstacles of a map, or the part in a box."""
-        return obstacle_potential(grid, box=box, **self._bell)
-
-
-@OBJECTIVES.register
-class Inflation(Risk):
-    """Sum over the visited cells of the cost of being near obstacles by the formula of navigation2's inflation layer.
-
-    For comparison with what a controller of navigation2 would prefer; the map has to state its resolution. With the defaults it
-    sees half a metre and is steep, so that fronts have few paths.
-
-    Parameters
-    ----------
-    cost_scaling_factor : float, default 10.0
-        By how much the cost falls, 1 / m, see `pymoo_gridpath.fields.inflation_cost`.
-    inflation_radius : float, default 0.55
-        How far obstacles cost anything, in metres.
-
-    Raises
-    ------
-    GridError
-        If a number is not positive.
-    """
-
-    name = "inflation"
-    label = "Inflation cost"
-    wider = "a smaller cost_scaling_factor and a larger inflation_radius"
-
-    def __init__(self, cost_scaling_factor: float = 10.0, inflation_radius: float = 0.55):
-        self.cost_scaling_factor, self.inflation_radius = check_inflation(cost_scaling_factor, inflation_radius)
-
-    def potential(self, grid, box=None):
-        """Return the costs of a map, or those in a box."""
-        return inflation_cost(grid, self.cost_scaling_factor, self.inflation_radius, box)
 
 
 @OBJECTIVES.register
@@ -372,6 +246,7 @@ class Turn(Objective):
 
     name = "turn"
     label = "Total turn [degrees]"
+    best = "smoothest"
     turn_cost = float(TURN_UNIT)
     penalty_unit = TURN_UNIT
 
@@ -394,6 +269,7 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
 
     Examples
     --------
+    >>> from pymoo_gridpath.objectives import Vulnerability
     >>> make_objectives(["length", Vulnerability(variance=2.0)])
     (Length(), Vulnerability(variance=2.0))
     """
@@ -414,6 +290,8 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
         what = f"of the objective {shown(item.name)}"
         checks.number(f"turn_cost {what}", item.turn_cost, 0.0, expected="the cost of 45 degrees of turning, zero or more")
         checks.one_of(f"combine {what}", item.combine, COMBINATIONS)
+        checks.flag(f"maximise {what}", item.maximise)
+        checks.text(f"best {what}", item.best)
         made.append(item)
     names = [item.name for item in made]
     if not names or len(set(names)) < len(names):
@@ -512,11 +390,53 @@ def moves_of(objective: Objective, grid: OccupancyGrid) -> MoveCosts | None:
     return np.where(finite, costs, 0.0)
 
 
+def levels_of(objective: Objective, field: np.ndarray) -> np.ndarray:
+    """Return how good each cell is by an objective whose worst cell decides: 0 for the best, 1 for the next, and so on.
+
+    Parameters
+    ----------
+    objective : Objective
+    field : numpy.ndarray
+        Its field, or a part of it.
+
+    Returns
+    -------
+    numpy.ndarray of int64, of the same shape
+    """
+    return np.unique(-field if objective.maximise else field, return_inverse=True)[1].reshape(field.shape)
+
+
+def avoiding_costs(objective: Objective, moves: Moves, start: int, goal: int, field: np.ndarray) -> np.ndarray:
+    """Return costs of cells that lead paths along cells which are good by an objective whose worst cell decides.
+
+    Nothing where a cell is no worse than what the best path has to pass; from there on each level costs so many times as much
+    as the one before, and the worst of all 1.
+
+    Parameters
+    ----------
+    objective : Objective
+    moves : Moves
+    start, goal : int
+        Indices of two cells that a path joins.
+    field : numpy.ndarray, shape (height, width) of the box of the moves
+        The objective's.
+
+    Returns
+    -------
+    numpy.ndarray of float, of the same shape
+    """
+    levels = levels_of(objective, field)
+    over = levels - best_level(moves, levels.ravel(), start, goal)
+    last = over[moves.legal.reshape(over.shape) > 0].max(initial=1)
+    growth = min(_STEEPNESS ** (1 / last), _MOST_GROWTH)
+    return np.where(over > 0, growth ** np.minimum(over - last, 0.0), 0.0)
+
+
 def visiting_costs(objective: Objective, grid: OccupancyGrid, box: Box, field=None) -> np.ndarray | BoxedField | None:
     """Return about what a visit of each cell costs, whichever way it is entered: for searches that need no more than that.
 
     The field; where moves have costs of their own in each cell, with the mean of those over the legal steps into it. None where
-    all cells cost the same, or costs do not add up.
+    all cells cost the same, or costs do not add up to what is to be little.
 
     Parameters
     ----------
@@ -527,7 +447,7 @@ def visiting_costs(objective: Objective, grid: OccupancyGrid, box: Box, field=No
     field : numpy.ndarray or BoxedField, optional
         That of the objective in the box, if it is at hand.
     """
-    if objective.combine != "sum":
+    if objective.combine != "sum" or objective.maximise:
         return None
     field = field_of(objective, grid, box) if field is None else field
     costs = moves_of(objective, grid)
