@@ -182,7 +182,8 @@ def obstacle_potential(
     in_cells = bell.in_cells(grid)
     box = grid.whole if box is None else check_box(box, grid)
     field = _of_nearest(grid, in_cells, box) if bell.nearest else _of_all(grid, in_cells, box)
-    field[field < bell.cutoff] = 0.0
+    if bell.cutoff > 0.0:
+        field[field < bell.cutoff] = 0.0
     return np.round(field / QUANTUM) * QUANTUM
 
 

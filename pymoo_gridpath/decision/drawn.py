@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.decision.export import HEADERS, shown_measures
-from pymoo_gridpath.decision.measures import PathMeasures
+from pymoo_gridpath.decision.measures import PathMeasures, risk_of
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import Box
@@ -22,9 +22,12 @@ def drawn_box(trade_off) -> Box:
 
 
 def drawn_field(trade_off, box: Box) -> np.ndarray:
-    """Return the potential under the cells of the part that is drawn, that of the problem's vulnerability."""
+    """Return the potential under the cells of the part that is drawn, that of the problem's risk."""
     problem = trade_off.problem
-    return PathMeasures(problem).field if box == problem.representation.box else obstacle_potential(problem.grid)
+    if box == problem.representation.box:
+        return PathMeasures(problem).field
+    risk = risk_of(problem)
+    return obstacle_potential(problem.grid) if risk is None else risk.potential(problem.grid)
 
 
 def scene_of(trade_off) -> Scene:

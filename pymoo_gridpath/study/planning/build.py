@@ -109,7 +109,9 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
     """
     if "random" in spec:
         family = spec["random"]
-        return random_dense_grid(family["size"], family["p0"], family["seed"]).replace(**steps_of(spec))
+        return random_dense_grid(family["size"], family["p0"], family["seed"]).replace(
+            resolution=spec.get("resolution"), **steps_of(spec)
+        )
     if cells is None:
         raise GridPathError("the cells of the map are missing, expected those that were planned with")
     grid = OccupancyGrid(_unpacked(cells, (spec["height"], spec["width"])), spec.get("resolution"), **steps_of(spec))

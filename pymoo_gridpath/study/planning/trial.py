@@ -78,7 +78,8 @@ def _small(pair: Pair) -> Pair:
         kept = steps_of(problem["grid"])
         last = _STAND_IN["size"] - 1
         grid, stand_in = None, _STAND_IN | kept
-        problem |= {"grid": {"random": stand_in}, "start": [0, 0], "goal": [last, last]}
+        metres = {key: problem["grid"][key] for key in ("resolution",) if key in problem["grid"]}
+        problem |= {"grid": {"random": stand_in, **metres}, "start": [0, 0], "goal": [last, last]}
     if "moving" in problem:
         problem = tried(problem, stand_in)
     if "pop_size" in algorithm:

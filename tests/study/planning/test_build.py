@@ -17,9 +17,10 @@ from pymoo_gridpath.algorithms import ExactFront, ahmed_deb_2013, make_algorithm
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators import DiscreteSBX, PathMutation, SpliceCrossover, paper_operators, path_operators
 from pymoo_gridpath.problems import random_dense_grid
-from pymoo_gridpath.study.planning import build
+from pymoo_gridpath.study.planning import build, trial
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_termination, pack_grid
 from pymoo_gridpath.study.planning.expand import plan_study
+from pymoo_gridpath.study.specification.problem import ProblemSpec
 from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.testing.enumeration import RULES
 
@@ -65,6 +66,42 @@ def test_grids_pack_and_build(occupied, resolution, steps):
     assert pack_grid(grid.replace(name="another", origin=(0, 0)))[0] == spec
     assert ("resolution" in spec) == (resolution is not None)
     assert pack_grid(grid.replace(resolution=20.0))[0] == {**spec, "resolution": 20.0}
+
+
+@pytest.mark.parametrize(
+    ("problem", "risk"),
+    [
+        ({"map": "warehouse"}, "Vulnerability(sigma_m=1.0, nearest=True, cutoff=1e-06)"),
+        ({"map": "warehouse", "resolution": 0.05}, "Vulnerability(sigma_m=0.3, nearest=True, cutoff=1e-06)"),
+        ({"map": "paper16", "axis": "x"}, "Vulnerability(variance=0.5, nearest=False, cutoff=0.0)"),
+        (
+            {"map": "warehouse", "objectives": ["length", {"class": "vulnerability", "variance": 0.5}]},
+            "Vulnerability(variance=0.5, nearest=False, cutoff=0.0)",
+        ),
+        (
+            {"map": "warehouse", "objectives": ["length", {"class": "vulnerability", "sigma_m": 0.7}]},
+            "Vulnerability(sigma_m=0.7, nearest=True, cutoff=1e-06)",
+        ),
+        (
+            {"map": "warehouse", "objectives": ["length", "inflation"]},
+            "Inflation(cost_scaling_factor=10.0, inflation_radius=0.55)",
+        ),
+    ],
+)
+def test_workers_have_the_risk_of_the_map(problem, risk):
+    task = task_of(problem, {"algorithm": "NSGA2", "pop_size": 8})
+    assert repr(build_problem(task.problem, task.grid).objectives[1]) == risk
+
+
+def test_trials_on_another_grid_have_metres_too():
+    """On a map that is too large for a trial a small one stands in, which must have a size as well."""
+    grid = OccupancyGrid(np.zeros((120, 120)), 0.05)
+    problem = ProblemSpec(grid=grid, start=(0, 0), goal=(3, 3), objectives=["length", "inflation"])
+    study = Study(problems=[problem], algorithms=[{"algorithm": "NSGA2"}], seeds=1, budget={"generations": 2}, reference=False)
+    plan = plan_study(study)
+    task = plan.task(plan.runs[-1])
+    small = trial._small(trial.Pair(task.problem, task.algorithm, task.grid, "large", 0))
+    assert small.grid is None and build_problem(small.problem).grid.resolution == 0.05
 
 
 @settings(max_examples=50, deadline=None)
