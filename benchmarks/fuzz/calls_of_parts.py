@@ -210,6 +210,13 @@ def _problems(w: World) -> dict[str, Call]:
             for one in (
                 *(objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.Inflation()),
                 *(objectives.LeastClearance(), objectives.GroundCost(w.field), objectives.Climb(w.field)),
+                objectives.Length(),
+                objectives.Turn(),
+                objectives.Vulnerability(2.0),
+                objectives.Inflation(),
+                objectives.LeastClearance(),
+                objectives.GroundCost(w.field),
+                objectives.Climb(w.field),
             )
             for method, given in (
                 ("field", {"grid": w.grid}),
