@@ -163,15 +163,15 @@ def measure(kind: str, seed: int, n_eval: int) -> dict[str, Row]:
         rows[name] = row(grid, found.waypoints[0], found.cells[0], found.passes[0], np.nan, time.process_time() - begin)
         if road == "skeleton":
             initial, radius = found.initial[0], found.radius[0]
-            rows["the initial path"] = row(grid, Waypoints.of(grid, initial), initial)
+            rows["the initial path"] = row(grid, Waypoints(grid, initial), initial)
         else:
             shortest = found.initial[0]
-            rows["the shortest path, eight directions"] = row(grid, Waypoints.of(grid, shortest), shortest)
+            rows["the shortest path, eight directions"] = row(grid, Waypoints(grid, shortest), shortest)
     for growth, distance in zip(GROWTHS, (radius, 0.0), strict=True):
         problem = ShorteningProblem(grid, initial, distance, POINTS)
         if distance == 0:
             corners, cells, lengths = shorten(problem.moves, problem.road, 100)
-            waypoints = Waypoints.of(grid, problem.moves.cells(corners))
+            waypoints = Waypoints(grid, problem.moves.cells(corners))
             rows[OURS + growth] = row(grid, waypoints, problem.moves.cells(cells), len(lengths) - 1)
         rows[OPTIMUM + growth] = optimum(problem)
         rows[OPTIMUM + ", and again on its path" + growth] = optimum(problem, again=True)

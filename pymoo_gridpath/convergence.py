@@ -42,6 +42,8 @@ class ConvergenceRecorder(Callback):
         The least among those, ``inf`` if there is none.
     fronts : list of numpy.ndarray, shape (K, n_obj)
         Their non-dominated plain objectives, each point once.
+    resolution : float or None
+        Metres a cell of the map, if it states them and something was recorded.
     """
 
     def __init__(self, reference_point: Sequence[float] | np.ndarray | None = None):
@@ -53,6 +55,7 @@ class ConvergenceRecorder(Callback):
         self.best_length: list[float] = []
         self.best_vulnerability: list[float] = []
         self.fronts: list[np.ndarray] = []
+        self.resolution: float | None = None
         self._measures: PathMeasures | None = None
 
     def __len__(self) -> int:
@@ -66,6 +69,7 @@ class ConvergenceRecorder(Callback):
     def _update(self, algorithm: Any) -> None:
         if self._measures is None:
             self._measures = PathMeasures(algorithm.problem)
+            self.resolution = algorithm.problem.grid.resolution
         members = Members(algorithm)
         found = snapshot(algorithm, members)
         self.evaluations.append(found.n_eval)

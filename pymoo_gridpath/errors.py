@@ -10,7 +10,7 @@ import difflib
 from collections.abc import Iterable
 
 # Letters of a key that a message shows where it says in which place of a study something is wrong.
-_LONGEST_KEY = 80
+_LONGEST_KEY = 64
 
 
 class GridPathError(ValueError):

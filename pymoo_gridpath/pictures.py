@@ -28,13 +28,13 @@ PALETTE = {
     "cheapest": "#8C4A2F",
     "flattest": "#7A7A00",
 }
-OCCUPIED, UNKNOWN, OTHERS, INK = "#3b3f45", "#b9bec6", "#8a8f98", "#111418"
+OCCUPIED, GROWN, UNKNOWN, OTHERS, INK = "#3b3f45", "#8fa3bf", "#b9bec6", "#8a8f98", "#111418"
 
 # The longer side of a picture is at most so many dots, and a cell is no larger than this.
 _MOST_DOTS, _MOST_CELL = 320, 10
 
 # On a terminal each of these covers those before it, where a character stands for several cells.
-_FREE, _MAYBE, _BLOCKED, _OTHER, _FIRST = 0, 1, 2, 3, 4
+_FREE, _MAYBE, _NEAR, _BLOCKED, _OTHER, _FIRST = range(6)
 
 
 class Line(NamedTuple):
@@ -56,6 +56,8 @@ class Scene(NamedTuple):
         Cells of paths that stay in the background.
     lines : sequence of Line
     start, goal : (int, int), optional
+    grown : numpy.ndarray of bool, optional
+        Which occupied cells are so because obstacles grew by the robot's size.
     """
 
     occupied: np.ndarray
@@ -64,6 +66,7 @@ class Scene(NamedTuple):
     lines: Sequence[Line] = ()
     start: tuple[int, int] | None = None
     goal: tuple[int, int] | None = None
+    grown: np.ndarray | None = None
 
     def cropped(self, x0: int, y0: int, x1: int, y1: int) -> Scene:
         """Return the part of the scene from the cell (x0, y0) on and up to (x1, y1), which is not in it."""
@@ -74,6 +77,7 @@ class Scene(NamedTuple):
             [cells - corner for cells in self.others],
             [line._replace(cells=line.cells - corner) for line in self.lines],
             *(None if end is None else (end[0] - x0, end[1] - y0) for end in (self.start, self.goal)),
+            grown=None if self.grown is None else self.grown[part],
         )
 
 
@@ -91,7 +95,7 @@ def png(scene: Scene) -> bytes:
     size = 1 if shrink > 1 else max(1, min(_MOST_CELL, _MOST_DOTS // max(height, width)))
     codes = _shrunk(_codes(scene), shrink)[::-1].repeat(size, axis=0).repeat(size, axis=1)
     picture = Image.fromarray(codes, mode="P")
-    colors = ["#ffffff", UNKNOWN, OCCUPIED, OTHERS, INK, *(line.color for line in scene.lines)]
+    colors = ["#ffffff", UNKNOWN, GROWN, OCCUPIED, OTHERS, INK, *(line.color for line in scene.lines)]
     picture.putpalette([part for color in colors for part in bytes.fromhex(color[1:])])
     draw = ImageDraw.Draw(picture)
 
@@ -99,18 +103,18 @@ def png(scene: Scene) -> bytes:
         x, y = (np.asarray(cells, dtype=float).reshape(-1, 2).T + 0.5) * (size / shrink)
         return list(zip(x.tolist(), (len(codes) - y).tolist(), strict=True))
 
-    thin = max(1, size // 6)
+    thin, ink = max(1, size // 6), _FIRST
     for cells in scene.others:
-        draw.line(place(cells), fill=3, width=thin)
+        draw.line(place(cells), fill=_OTHER, width=thin)
     for k, line in enumerate(scene.lines):
-        draw.line(place(line.cells), fill=5 + k, width=thin + 1, joint="curve")
+        draw.line(place(line.cells), fill=ink + 1 + k, width=thin + 1, joint="curve")
     for cell, square in ((scene.start, False), (scene.goal, True)):
         if cell is not None:
             ((x, y),), r = place(cell), max(3, 0.35 * size)
             shape = draw.rectangle if square else draw.ellipse
-            shape((x - r, y - r, x + r, y + r), fill=0, outline=4, width=max(1, int(r / 3)))
+            shape((x - r, y - r, x + r, y + r), fill=_FREE, outline=ink, width=max(1, int(r / 3)))
     # The edge of the map, where its cells have the colour of the page.
-    draw.rectangle((0, 0, picture.width - 1, picture.height - 1), outline=1)
+    draw.rectangle((0, 0, picture.width - 1, picture.height - 1), outline=_MAYBE)
     file = io.BytesIO()
     picture.save(file, "PNG", optimize=True)
     return file.getvalue()
@@ -151,6 +155,8 @@ def _codes(scene: Scene) -> np.ndarray:
     if scene.unknown is not None:
         codes[scene.unknown] = _MAYBE
     codes[scene.occupied] = _BLOCKED
+    if scene.grown is not None:
+        codes[scene.grown] = _NEAR
     return codes
 
 
@@ -166,7 +172,7 @@ def _shrunk(codes: np.ndarray, factor: int) -> np.ndarray:
 # -- half blocks for terminals --------------------------------------------------------------------------------------------
 
 # Of the 256 colours that terminals know, the nearest.
-_TERMINAL = {"free": 255, "unknown": 250, "occupied": 238, "others": 245, "start": 16, "goal": 16}
+_TERMINAL = {"free": 255, "unknown": 250, "grown": 110, "occupied": 238, "others": 245, "start": 16, "goal": 16}
 _MARKS = {"upper": "\u2580", "lower": "\u2584", "both": "\u2588", "path": "\u2022"}
 
 
@@ -214,7 +220,7 @@ def half_blocks(scene: Scene, columns: int, lines: int, colors: bool = True) -> 
     pairs = zip(small[::2], small[1::2], strict=True)
     if not colors:
         return "\n".join("".join(map(_plain_mark, *pair)).rstrip() for pair in pairs)
-    palette = [_TERMINAL[name] for name in ("free", "unknown", "occupied", "others")]
+    palette = [_TERMINAL[name] for name in ("free", "unknown", "grown", "occupied", "others")]
     palette += [*(nearest_color(line.color) for line in scene.lines), _TERMINAL["start"]]
     text = (
         "".join(f"\x1b[38;5;{palette[a]};48;5;{palette[b]}m{_MARKS['upper']}" for a, b in zip(*pair, strict=True))
@@ -238,7 +244,7 @@ def _plain_mark(upper: int, lower: int) -> str:
     if max(upper, lower) >= _OTHER:
         return _MARKS["path"]
     return {(True, True): _MARKS["both"], (True, False): _MARKS["upper"], (False, True): _MARKS["lower"]}.get(
-        (upper == _BLOCKED, lower == _BLOCKED), " "
+        (_NEAR <= upper <= _BLOCKED, _NEAR <= lower <= _BLOCKED), " "
     )
 
 

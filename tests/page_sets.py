@@ -19,6 +19,14 @@ class Hostile(Objective):
 
 
 @functools.cache
+def grown_set() -> TradeOffSet:
+    """Return that of a robot in the same room, about which obstacles grew."""
+    grid = exact_set().problem.grid.inflate(0.3)
+    problem = GridPathProblem(grid, (0, 5), (15, 6), "cells", ["length", Vulnerability(variance=2.0)])
+    return TradeOffSet.from_genes(problem, problem.pareto_set(max_seconds=60))
+
+
+@functools.cache
 def exact_set(n_obj: int = 2, name: str = "room", hostile: bool = False, resolution: float | None = 0.25) -> TradeOffSet:
     """Return the exact front of a room with two obstacles, on a map that is turned."""
     occupied = np.zeros((12, 16), dtype=bool)

@@ -78,9 +78,10 @@ def test_each_picture_shows_the_map_the_paths_and_the_front_of_its_epoch(run, tm
         cells, offsets = paths.sequences
         ways = np.split(np.column_stack([cells % 8, cells // 8]), offsets[1:-1])
         np.testing.assert_allclose(np.concatenate(drawn), np.concatenate(sorted(frame(way).tolist() for way in ways)))
-        np.testing.assert_allclose(right.collections[0].get_offsets(), clock.F[epoch])
+        np.testing.assert_allclose(right.collections[0].get_offsets(), clock.F[epoch] * (0.5, 1.0))
         exact = right.lines[1].get_xydata()
-        np.testing.assert_array_equal(exact, problem.pareto_front())
+        np.testing.assert_array_equal(exact, problem.pareto_front() * (0.5, 1.0))
+        assert right.get_xlabel() == "Path length [m]"
         assert left.get_title(loc="left").startswith(f"Epoch {epoch + 1} of 2: {len(clock.F[epoch])} path")
         limits.append([*right.get_xlim(), *right.get_ylim(), *left.get_xlim(), *left.get_ylim(), *left.get_position().bounds])
     assert limits[0] == limits[1]

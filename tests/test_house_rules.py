@@ -199,7 +199,7 @@ RULES = {
     # The name of the coding, which is taken, and which the paper's planner takes.
     default_representation: {"representations.integer", "representations.factory", "algorithms.paper"},
     query_of_a_map: {"maps.queries"},
-    radius_of_a_robot: {"grid.occupancy"},
+    radius_of_a_robot: {"grid.grown"},
     # That of a problem, and that of the paper's planner.
     penalties: {"problems.grid_path", "algorithms.paper"},
     # What each derives from, by which it is registered; and what a file says of a run, by where pymoo's algorithms hold it.

@@ -2,6 +2,7 @@
 
 import html.parser
 import io
+import re
 import sys
 from types import SimpleNamespace
 
@@ -106,10 +107,30 @@ def test_everything_shows_itself_in_a_notebook(kind):
     assert thing._repr_png_() == thing._repr_png_()
 
 
+def test_obstacles_are_told_from_what_is_too_near_to_them():
+    grid = OccupancyGrid([[0, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 0, 0]], 0.5).grow(0.6)
+    for thing in (grid, GridPathProblem(grid, (0, 0), (0, 2))):
+        picture = Image.open(io.BytesIO(thing._repr_png_())).convert("RGB")
+        size = picture.width // 5
+        shade = {
+            cell: picture.getpixel((int((cell[0] + 0.5) * size), int((2.5 - cell[1]) * size))) for cell in ((2, 1), (1, 1))
+        }
+        assert shade == {(2, 1): rgb(pictures.OCCUPIED), (1, 1): rgb(pictures.GROWN)}
+    scene = pictures.Scene(grid.occupied, grown=grid.grown_cells)
+    assert len(set(re.findall(r"48;5;(\d+)", pictures.half_blocks(scene, 10, 10)))) == 3
+    assert pictures.half_blocks(scene, 10, 10, colors=False) == pictures.half_blocks(
+        pictures.Scene(grid.occupied), 10, 10, colors=False
+    )
+
+
+def rgb(color):
+    return tuple(bytes.fromhex(color[1:]))
+
+
 def test_what_is_said_beside_the_pictures():
     found = exact_set()
     said = Tags(found._repr_html_()).text
-    assert f"{len(found)} trade-off paths on room" in said and "knee" in said and f"{found.knee.length:.5g}" in said
+    assert f"{len(found)} trade-off paths on room" in said and "knee" in said and f"{found.knee.length_m:.5g}" in said
     assert "16 x 12" in Tags(found.problem.grid._repr_html_()).text
     assert "(0, 5), (15, 6)" in Tags(found.problem._repr_html_()).text
     assert "Path 0 (shortest" in Tags(found.shortest._repr_html_()).text

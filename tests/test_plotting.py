@@ -18,7 +18,7 @@ from pymoo_gridpath.decision import TradeOffSet
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.plotting import plot_convergence, plot_front, plot_map, plot_paths, save_figures
-from pymoo_gridpath.plotting.style import NAME_STYLES, OCCUPIED, STYLE
+from pymoo_gridpath.plotting.style import GROWN, NAME_STYLES, OCCUPIED, STYLE
 from pymoo_gridpath.problems import random_dense_grid
 
 mpl.use("Agg")
@@ -463,3 +463,40 @@ def test_given_axes_are_used_and_returned(two, three, runs):
     space = figure.add_subplot(projection="3d")
     assert plot_front(three, ax=space) is space
     assert plt.get_fignums() == [figure.number]
+
+
+# -- metres, and what grew ------------------------------------------------------------------------------------------------
+
+
+def test_obstacles_are_told_from_what_is_too_near_to_them():
+    occupied = np.zeros((6, 9), dtype=bool)
+    occupied[2, 4] = True
+    grid = OccupancyGrid(occupied, 0.5).inflate(0.6)
+    problem = GridPathProblem(grid, (0, 0), (8, 5))
+    found = TradeOffSet.from_genes(problem, problem.pareto_set(max_seconds=60))
+    for ax in (plot_map(grid, potential=False), plot_paths(found, potential=False)):
+        image = np.asarray(ax.images[0].get_array())
+        assert np.allclose(image[occupied], to_rgb(OCCUPIED))
+        assert np.allclose(image[grid.occupied & ~occupied], to_rgb(GROWN)) and np.allclose(image[~grid.occupied], 1.0)
+        assert "too near for the robot" in [text.get_text() for text in ax.get_legend().get_texts()]
+    assert plot_map(OccupancyGrid(occupied, 0.5)).get_legend() is None
+
+
+def test_figures_are_in_metres_where_the_map_has_them(runs):
+    found, in_cells = make_set(resolution=0.5, representation="integer"), make_set(representation="integer")
+    assert plot_paths(found).get_xlabel() == plot_map(found.problem.grid).get_xlabel() == "$x$ [m]"
+    assert plot_paths(in_cells).get_xlabel() == "$x$ [cells]" and plot_paths(found, units="cells").get_xlabel() == "$x$ [cells]"
+    for one, label, scale in ((found, "Path length [m]", 0.5), (in_cells, "Path length [cells]", 1.0)):
+        ax = plot_front(one, reference=one)
+        assert ax.get_xlabel() == label
+        for dots in ax.collections:
+            np.testing.assert_allclose(np.sort(dots.get_offsets()[:, 0]), np.sort(one.F[:, 0]) * scale)
+    assert plot_convergence(runs).get_ylabel() == "Least length [cells]"
+    lengths = plot_convergence(runs[0]).lines[0].get_ydata()
+    for run in runs:
+        run.algorithm.callback.resolution = 0.5
+    ax = plot_convergence(runs[0])
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), 0.5 * lengths)
+    assert ax.get_ylabel() == "Least length [m]"
+    for run in runs:
+        run.algorithm.callback.resolution = None

@@ -57,7 +57,11 @@ def _grids(w: World) -> dict[str, Call]:
                 "moves": 4,
             },
         ),
-        "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.5}),
+        "OccupancyGrid.inflate": (grid.inflate, {"radius": 0.0, "footprint": [(0.6, 0.2), (-0.6, 0.2), (0.0, -0.4)]}),
+        "OccupancyGrid.grown_from": (
+            grid.grown_from,
+            {"original": grid, "robot_radius": 0.5, "footprint": [(0.5, 0.0), (0.0, 0.2), (-0.1, -0.2)]},
+        ),
         "OccupancyGrid.grow": (grid.grow, {"cells": 1.5}),
         "OccupancyGrid.check_resolution": (grid.check_resolution, {"need": "a radius in metres"}),
         "OccupancyGrid.radius_in_cells": (grid.radius_in_cells, {"radius": 0.5}),
@@ -101,6 +105,12 @@ def _maps(w: World) -> dict[str, Call]:
         "read_terrain": (maps.read_terrain, {"path": w.movingai_map, "weights": {"S": 3.0}}),
         "read_npy": (maps.read_npy, {"path": w.npy_map, "corner_cutting": True, **pose}),
         "read_ros": (maps.read_ros, {"path": w.ros_map, "unknown": "occupied", "corner_cutting": True}),
+        "read_ros_message": (maps.read_ros_message, {"path": w.ros_message, "unknown": "free", "corner_cutting": True}),
+        "read_rosbag": (maps.read_rosbag, {"path": w.bag, "topic": "/map", "unknown": "free", "corner_cutting": True}),
+        "grid_of_message": (
+            maps.grid_of_message,
+            {"message": w.message, "unknown": "free", "corner_cutting": True, "name": "hall"},
+        ),
         "read_scen": (maps.read_scen, {"path": w.scen, "grid": maps.read_movingai(w.movingai_map)}),
         "read_text": (maps.read_text, {"path": w.text_map, "corner_cutting": True, **pose}),
         "read_text_header": (maps.read_text_header, {"path": w.text_map}),
@@ -121,6 +131,7 @@ def _problems(w: World) -> dict[str, Call]:
     shortening = problems.ShorteningProblem(w.grid, road, n_points=2)
     moving = problems.MovingObstaclesProblem(w.grid, [[(-1, 0), (-2, 0)]], **w.query)
     timed = w.timed
+    metres = {"grid": w.grid, **{end: tuple(w.grid.to_metres(cell)) for end, cell in w.query.items()}}
     own = {"grid": w.grid, **w.query, "representation": "integer", "objectives": ("length", "vulnerability"), "axis": "x"}
     return {
         "GridPathProblem": (
@@ -129,6 +140,15 @@ def _problems(w: World) -> dict[str, Call]:
         ),
         "GridPathProblem.decode": (problem.decode, {"X": w.rows(problem)}),
         "GridPathProblem.evaluate": (partial(problem.evaluate, return_values_of=["F", "turn"]), {"X": w.rows(problem)}),
+        "GridPathProblem.from_metres": (GridPathProblem.from_metres, {**metres, "goal_tolerance": 0.5}),
+        "MovingObstaclesProblem.from_metres": (
+            problems.MovingObstaclesProblem.from_metres,
+            {**metres, "movers": [[(-1, 0), (-2, 0)]]},
+        ),
+        "TimedPathProblem.from_metres": (
+            problems.TimedPathProblem.from_metres,
+            {**metres, "movers": [[(-1, 0), (-2, 0)]], "horizon": 12},
+        ),
         "GridPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
         "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),
@@ -185,10 +205,18 @@ def _problems(w: World) -> dict[str, Call]:
         "far_corners": (problems.far_corners, {"grid": w.grid}),
         "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
         "Length": (objectives.Length, {}),
+        "LeastClearance": (objectives.LeastClearance, {}),
         **{
             f"{type(one).__name__}.{method}": (getattr(one, method), given)
-            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.Inflation())
-            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.LeastClearance())
+            for one in (
+                objectives.Length(),
+                objectives.Turn(),
+                objectives.Vulnerability(2.0),
+                objectives.Inflation(),
+                objectives.LeastClearance(),
+                objectives.GroundCost(w.field),
+                objectives.Climb(w.field),
+            )
             for method, given in (
                 ("field", {"grid": w.grid}),
                 ("field_in", {"grid": w.grid, "box": w.grid.whole}),
@@ -208,18 +236,8 @@ def _problems(w: World) -> dict[str, Call]:
         "Inflation": (objectives.Inflation, {"cost_scaling_factor": 3.0, "inflation_radius": 0.5}),
         "Inflation.potential": (objectives.Inflation().potential, {"grid": w.grid, "box": w.grid.whole}),
         "Objective.on": (objectives.Turn().on, {"grid": w.grid}),
-        "Turn.field": (objectives.Turn().field, {"grid": w.grid}),
-        "Turn.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
         "GroundCost": (objectives.GroundCost, {"cost": w.field, "weight": 2.0, "per": "entry", "name": "mud", "label": "Mud"}),
         "Climb": (objectives.Climb, {"elevation": w.field, "name": "rise", "label": "Rise [m]"}),
-        **{
-            f"{type(one).__name__}.{method}": (getattr(one, method), {"grid": w.grid})
-            for one in (objectives.GroundCost(w.field), objectives.Climb(w.field))
-            for method in ("field", "moves")
-        },
-        "LeastClearance.field": (objectives.LeastClearance().field, {"grid": w.grid}),
-        "Vulnerability.field": (objectives.Vulnerability(2.0).field, {"grid": w.grid}),
-        "Vulnerability.field_in": (objectives.Vulnerability(2.0).field_in, {"grid": w.grid, "box": w.grid.whole}),
         # An objective of one's own, whose field and values are arguments too.
         "Objective": (partial(_own_objective, w), {"field": w.field, "factor": np.ones(5)}),
     }

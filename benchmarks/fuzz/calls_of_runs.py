@@ -182,6 +182,7 @@ def _algorithms(w: World) -> dict[str, Call]:
 
 def _results(w: World) -> dict[str, Call]:
     trade_off = w.trade_off
+    line = trade_off[0].waypoints()
     settings = {"settings": {"note": "a"}}
     F = np.array([[0.0, 4.0], [1.0, 1.0], [4.0, 0.0]])
     return {
@@ -199,6 +200,12 @@ def _results(w: World) -> dict[str, Call]:
         "TradeOffSet.to_json": (trade_off.to_json, {"path": w.folder / "again.json"}),
         "PathRecord": (decision.PathRecord, trade_off[0].as_dict()),
         "PathRecord.as_dict": (trade_off[0].as_dict, {}),
+        "PathRecord.waypoints": (trade_off[0].waypoints, {"tolerance": 0.1, "spacing": 0.5}),
+        "Waypoints": (algorithms.Waypoints, {"grid": w.grid, "cells": np.array([[0, 0], [5, 0], [7, 5]])}),
+        "Waypoints.resampled": (line.resampled, {"spacing": 0.5}),
+        "Waypoints.to_csv": (line.to_csv, {"path": w.folder / "line.csv"}),
+        "Waypoints.to_f1tenth": (line.to_f1tenth, {"path": w.folder / "raceline.csv", "speed": 2.0}),
+        "Waypoints.to_nav_path": (line.to_nav_path, {"path": w.folder / "line.yaml", "frame_id": "odom"}),
         "knee_point": (decision.knee_point, {"F": F}),
         "load_json": (decision.load_json, {"path": w.json, "problem": w.problem}),
         "save_page": (explorer.save_page, {"trade_off": trade_off, "file": w.folder / "page.html", "title": "a"}),
@@ -304,7 +311,8 @@ def _studies(w: World) -> dict[str, Call]:
                 "name": "a",
                 "grid": w.grid,
                 **query,
-                "radius": 0.1,
+                "radius": 0.0,
+                "footprint": [(0.1, 0.0), (-0.1, 0.1), (-0.1, -0.1)],
                 "objectives": ["length", "turn"],
                 "representation": "cells",
                 "obstacles": "penalty",
@@ -359,6 +367,7 @@ def _studies(w: World) -> dict[str, Call]:
         "Store.path": (w.store.path, {"key": key}),
         "Store.read": (w.store.read, {"key": key, "genes": True}),
         "Store.read_grid": (w.store.read_grid, {"planned": plan.problems[0]}),
+        "Store.read_original": (w.store.read_original, {"planned": plan.problems[0]}),
         "Store.read_plan": (w.store.read_plan, {}),
         "Store.write": (w.store.write, {"key": key, "data": w.store.path(key).read_bytes()}),
         "Store.write_plan": (w.store.write_plan, {"plan": plan, "study": "a"}),

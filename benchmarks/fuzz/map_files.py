@@ -124,12 +124,26 @@ def yaml(rng) -> Written:
     return Written("YAML", files, occupied, {"resolution": 0.05, "origin": (-1.5, 2.0, 0.0)})
 
 
+def message(rng) -> Written:
+    """A message nav_msgs/OccupancyGrid, its list in one line or one a line, as rostopic and ros2 topic print it."""
+    occupied = _cells(rng)
+    height, width = occupied.shape
+    values = np.where(occupied, rng.choice([-1, 65, 100], occupied.shape), rng.choice([0, 25], occupied.shape)).ravel().tolist()
+    data = f"data: {values}\n" if rng.random() < 0.5 else "data:\n" + "".join(f"- {value}\n" for value in values)
+    content = (
+        f"header:\n  frame_id: map\ninfo:\n  resolution: 0.05000000074505806\n  width: {width}\n  height: {height}\n"
+        "  origin:\n    position: {x: -1.5, y: 2.0, z: 0.0}\n    orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\n"
+    )
+    return Written("message", {"m.yaml": (content + data).encode()}, occupied, {"resolution": 0.05, "origin": (-1.5, 2.0, 0.0)})
+
+
 FORMATS: dict[str, Callable[[np.random.Generator], Written]] = {
     "text": text,
     "MovingAI": movingai,
     "scen": scen,
     "npy": npy,
     "yaml": yaml,
+    "message": message,
     "png": _image("PNG", "png", ("1", "L", "LA", "RGB", "RGBA", "P", "I;16")),
     "gif": _image("GIF", "gif", ("L", "P", "1")),
     "bmp": _image("BMP", "bmp", ("1", "L", "RGB")),

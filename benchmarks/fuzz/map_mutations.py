@@ -296,7 +296,7 @@ def mutate(written: Written, rng: np.random.Generator) -> tuple[str, dict[str, b
 
 def _harmless(written, name, content, others, rng, whole):
     """What must not matter."""
-    if written.format == "YAML":
+    if written.format in ("YAML", "message"):
         ways = {
             "line ends": content.replace(b"\n", b"\r\n"),
             "a comment": b"# a map\n" + content,

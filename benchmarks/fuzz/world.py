@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 from pymoo.optimize import minimize
+from rosbags.rosbag1 import Writer
+from rosbags.typesys import Stores, get_typestore
 
 from pymoo_gridpath import (
     GridPathProblem,
@@ -138,6 +141,42 @@ class World:
     def ros_map(self) -> Path:
         text = "image: {}\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
         return self.file("map.yaml", text.format(self.image.name).encode())
+
+    @cached_property
+    def message(self) -> SimpleNamespace:
+        turned = SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
+        pose = SimpleNamespace(position=SimpleNamespace(x=1.0, y=2.0, z=0.0), orientation=turned)
+        info = SimpleNamespace(resolution=0.05, width=3, height=2, origin=pose)
+        return SimpleNamespace(info=info, data=np.array([0, 100, -1, 0, 0, 0], dtype=np.int8))
+
+    @cached_property
+    def ros_message(self) -> Path:
+        text = (
+            "info:\n  resolution: 0.05\n  width: 2\n  height: 1\n  origin:\n    position: {x: 1.0, y: 2.0, z: 0.0}\n"
+            "    orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\ndata:\n- 0\n- -1\n"
+        )
+        return self.file("message.yaml", text.encode())
+
+    @cached_property
+    def bag(self) -> Path:
+        path = self.folder / "map.bag"
+        if not path.exists():
+            typestore = get_typestore(Stores.ROS1_NOETIC)
+            types: Any = typestore.types
+            time, info = types["builtin_interfaces/msg/Time"](0, 0), self.message.info
+            pose = types["geometry_msgs/msg/Pose"](
+                types["geometry_msgs/msg/Point"](**vars(info.origin.position)),
+                types["geometry_msgs/msg/Quaternion"](**vars(info.origin.orientation)),
+            )
+            message = types["nav_msgs/msg/OccupancyGrid"](
+                types["std_msgs/msg/Header"](0, time, "map"),
+                types["nav_msgs/msg/MapMetaData"](time, info.resolution, info.width, info.height, pose),
+                self.message.data,
+            )
+            with Writer(path) as bag:
+                connection = bag.add_connection("/map", "nav_msgs/msg/OccupancyGrid", typestore=typestore)
+                bag.write(connection, 0, typestore.serialize_ros1(message, "nav_msgs/msg/OccupancyGrid"))
+        return path
 
     @cached_property
     def npy_map(self) -> Path:

@@ -28,7 +28,7 @@ from pymoo_gridpath.planners import (
     SightPaths,
 )
 from pymoo_gridpath.registry import ALGORITHMS
-from pymoo_gridpath.search.sight import Waypoints
+from pymoo_gridpath.search.waypoints import Waypoints
 
 __all__ = [
     "ALGORITHMS",

@@ -22,11 +22,15 @@ class Parser(argparse.ArgumentParser):
         self.exit(EXIT_BAD_INPUT, f"{self.prog}: {visible(message)} (see {self.prog} --help)\n")
 
 
-def join_cells(argv: Sequence[str]) -> list[str]:
-    """Return arguments in which a cell such as -1,0 is joined to its option, which argparse would take for another option."""
+# Their values may begin with a minus, by which argparse takes them for other options.
+_PLACES = ("--start", "--goal", "--start-m", "--goal-m", "--footprint")
+
+
+def join_places(argv: Sequence[str]) -> list[str]:
+    """Return arguments in which a place such as -1,0 is joined to its option, which argparse would take for another option."""
     joined: list[str] = []
     for text in argv:
-        if joined and joined[-1] in ("--start", "--goal") and re.fullmatch(r"-\d+,.*", text):
+        if joined and joined[-1] in _PLACES and re.match(r"-[\d.].*,", text):
             joined[-1] += f"={text}"
         else:
             joined.append(text)
@@ -47,6 +51,17 @@ def natural(text: str) -> int:
     return int(text)
 
 
+def above_zero(text: str) -> float:
+    """Return the number above 0 that a text says."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0.0 < number < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0")
+    return number
+
+
 def share(text: str) -> float:
     """Return the number above 0, at most 1, that a text says."""
     try:
@@ -65,6 +80,28 @@ def cell(text: str) -> tuple[int, int]:
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a cell, expected X,Y such as 12,40") from None
     return x, y
+
+
+def point(text: str) -> tuple[float, float]:
+    """Return the point that a text such as "-1.5,2" says."""
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a point in metres, expected X,Y such as -1.5,2")
+    return x, y
+
+
+def outline(text: str) -> list[tuple[float, float]]:
+    """Return the corners that a text such as "0.3,0.2 -0.3,0.2 0,-0.2" says, or one such as "[[0.3, 0.2], ...]"."""
+    pairs = re.sub(r"\s*,\s*", ",", text.replace("],", "] ").replace("[", " ").replace("]", " ")).split()
+    try:
+        return [point(pair.strip(",")) for pair in pairs]
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no outline of a robot, expected corners in metres such as '0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2'"
+        ) from None
 
 
 def operators(text: str) -> dict[str, str]:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.cli.arguments import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_OK, Parser, join_cells
+from pymoo_gridpath.cli.arguments import EXIT_BAD_INPUT, EXIT_INTERRUPTED, EXIT_OK, Parser, join_places
 from pymoo_gridpath.cli.explore import add_explore_command
 from pymoo_gridpath.cli.maps import add_map_commands
 from pymoo_gridpath.cli.plan import add_plan_command
@@ -35,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             # A terminal or pipe that lacks a letter of a map's name shows its number instead.
             stream.reconfigure(errors="backslashreplace")
     given = sys.argv[1:] if argv is None else checks.names("argv", argv)
-    arguments = _parser().parse_args(join_cells(given))
+    arguments = _parser().parse_args(join_places(given))
     try:
         with warnings_as_lines():
             code = _carry_out(arguments)

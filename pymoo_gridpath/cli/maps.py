@@ -31,14 +31,17 @@ def add_map_commands(commands) -> None:
 
 
 # The options, by the names that `load_map` has for them.
-_READING = ("resolution", "unknown", "threshold", "corner_cutting", "moves")
+_READING = ("resolution", "topic", "unknown", "threshold", "corner_cutting", "moves")
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
     """Add the options by which maps are read."""
     group = parser.add_argument_group("reading the map")
     group.add_argument("--resolution", type=float, metavar="M", help="metres a cell, for maps that do not say")
-    group.add_argument("--unknown", choices=("free", "occupied"), help="what unknown cells of ROS maps and images count as")
+    group.add_argument(
+        "--topic", metavar="NAME", help="where the map of a ROS bag was published (default: /map, or the only one)"
+    )
+    group.add_argument("--unknown", choices=("free", "occupied"), help="what unknown cells of maps of ROS and images count as")
     group.add_argument(
         "--threshold", type=float, metavar="T", help="grey level below which an image's pixel is occupied, 0 to 1"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import signal
 import sys
@@ -12,7 +13,6 @@ from pymoo_gridpath.cli.arguments import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
-    cell,
     folder,
     html_file,
     natural,
@@ -21,6 +21,9 @@ from pymoo_gridpath.cli.arguments import (
 )
 from pymoo_gridpath.cli.ground import add_ground, given_ground, ground_of
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
+from pymoo_gridpath.cli.query import add_query, ends, grown
+from pymoo_gridpath.cli.resume import add_resume, read_stored, said, write_populations
+from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
 
@@ -40,9 +43,7 @@ def add_plan_command(commands) -> None:
     plan = commands.add_parser("plan", help="plan the trade-off paths of a query", description=_plan.__doc__)
     plan.set_defaults(run=_plan)
     plan.add_argument("map", nargs="?", metavar="MAP", help=f"map file or name of a shipped map (default: {DEFAULT_MAP})")
-    plan.add_argument("--start", type=cell, metavar="X,Y", help="start cell; x to the right, y up, from 0,0 at the bottom left")
-    plan.add_argument("--goal", type=cell, metavar="X,Y", help="goal cell")
-    plan.add_argument("--radius", type=float, default=0.0, metavar="M", help="robot radius in metres (default: a point)")
+    add_query(plan)
     add_reading(plan)
     search = plan.add_argument_group("search")
     search.add_argument(
@@ -106,25 +107,25 @@ def add_plan_command(commands) -> None:
         metavar="DIR",
         help="where files go (default: gridpath-out)",
     )
+    add_waypoint_options(plan)
     plan.add_argument("--html", type=html_file, metavar="FILE", help="write a page to choose a path from")
     plan.add_argument("--show", action="store_true", help="draw the map with the paths on a terminal that can")
-    plan.add_argument("--units", choices=("cells", "m"), default="cells", help="axes of the map figure (default: cells)")
+    plan.add_argument("--units", choices=("cells", "m"), help="axes of the map figure (default: metres if the map has them)")
+    add_resume(plan, search)
 
 
 def _plan(arguments) -> int:
     """Plan paths from a start to a goal, print the trade-off table, and write figures and files."""
     # Imported late, since `maps`, `info` and --help do without.
     from pymoo_gridpath.algorithms import find_algorithm
-    from pymoo_gridpath.compiled import COMPILED
-    from pymoo_gridpath.convergence import ConvergenceRecorder
-    from pymoo_gridpath.decision.drawn import scene_of
     from pymoo_gridpath.decision.provenance import describe_source
-    from pymoo_gridpath.explorer import save_page
-    from pymoo_gridpath.maps.queries import check_grown, ends_of, query_of
-    from pymoo_gridpath.plotting import save_figures
+    from pymoo_gridpath.maps import query_of
     from pymoo_gridpath.problems import GridPathProblem
+    from pymoo_gridpath.problems.standing import StandingProblem
     from pymoo_gridpath.representations import default_representation
 
+    if arguments.resume is not None:
+        return _go_on(arguments)
     if arguments.obstacles == "limit" and arguments.potential_limit is None:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
     map_name = arguments.map or DEFAULT_MAP
@@ -132,32 +133,66 @@ def _plan(arguments) -> int:
     if arguments.units == "m":
         # Now, and not once the search has ended.
         grid.check_resolution("--units m")
+    check_waypoint_options(arguments, grid)
     # Now, since the map planned on is the one grown by the radius, and the file may be another one after the search.
     unknown, source = unknown_of(grid), describe_source(grid)
     grid, ground = ground_of(grid, map_name, arguments)
     arguments.objectives = [*arguments.objectives, *ground]
-    start, goal = grid.check_query(*ends_of(grid, query_of(map_name), arguments.start, arguments.goal, option="--"))
-    grid = grid.inflate(arguments.radius)
-    check_grown(grid, arguments.radius, start, goal)
+    grid = grown(grid, arguments)
+    start, goal = ends(grid, query_of(map_name), arguments)
     objectives = _objectives(arguments, grid)
     representation = arguments.representation or default_representation(grid.corner_cutting, arguments.axis)
     name = arguments.algorithm or ("nsga2" if len(arguments.objectives) > 1 else "ga")
     spec = find_algorithm(name, len(arguments.objectives))
     _settle_options(spec, name, arguments)
     arguments.needs = _needed(grid, start, representation, arguments, spec.reference)
-    problem = GridPathProblem(
-        grid,
-        start,
-        goal,
-        representation=representation,
-        objectives=objectives,
-        obstacles=arguments.obstacles or "penalty",
-        penalty=arguments.penalty,
-        potential_limit=arguments.potential_limit,
-        axis=arguments.axis,
-    )
-    algorithm = _algorithm(name, spec, problem, arguments)
-    if not COMPILED and (isinstance(spec, type) or not problem.representation.paper):
+    settings = {
+        "objectives": objectives,
+        "obstacles": arguments.obstacles or "penalty",
+        "penalty": arguments.penalty,
+        "potential_limit": arguments.potential_limit,
+    }
+    standing = start == goal
+    if standing:
+        problem = StandingProblem(grid, start, **settings)
+    else:
+        problem = GridPathProblem(grid, start, goal, representation, axis=arguments.axis, **settings)
+    algorithm = None if standing else _algorithm(name, spec, problem, arguments)
+    return _carry_out(problem, name, spec, algorithm, arguments, source, unknown)
+
+
+def _go_on(arguments) -> int:
+    """Plan from the last populations of an earlier plan."""
+    from pymoo_gridpath.algorithms import find_algorithm
+
+    stored = read_stored(arguments)
+    problem, settings = stored.problem, stored.settings
+    if arguments.units == "m":
+        problem.grid.check_resolution("--units m")
+    check_waypoint_options(arguments, problem.grid)
+    name = arguments.algorithm or settings["algorithm"]["name"]
+    spec = find_algorithm(name, problem.n_obj)
+    if isinstance(spec, type):
+        raise GridPathError(f"--resume is not for --algorithm {name}, a planner that begins with no population")
+    _settle_options(spec, name, arguments)
+    arguments.objectives, arguments.runs = problem.objective_names, len(stored.populations)
+    arguments.pop_size = arguments.pop_size or settings["runs"][0]["pop_size"]
+    arguments.needs = _needed(problem.grid, problem.start, problem.representation.name, arguments, False)
+    print(said(stored, arguments.resume), flush=True)
+    starts = [_algorithm(name, spec, problem, arguments, start=X) for X in stored.populations]
+    return _carry_out(problem, name, spec, starts, arguments, settings["source_map"], None, stored.seed)
+
+
+def _carry_out(problem, name: str, spec, algorithm, arguments, source: dict, unknown: str | None, resumed=None) -> int:
+    """Search, print and write; of a plan that goes on there is an algorithm for each run, and the seed of the one before."""
+    from pymoo_gridpath.compiled import COMPILED
+    from pymoo_gridpath.convergence import ConvergenceRecorder
+    from pymoo_gridpath.decision.drawn import scene_of
+    from pymoo_gridpath.explorer import save_page
+    from pymoo_gridpath.plotting import save_figures
+
+    grid, start, goal, standing = problem.grid, problem.start, problem.goal, algorithm is None
+    if not COMPILED and not standing and (isinstance(spec, type) or not problem.representation.paper):
         print(
             "numba is not installed, so the search runs as plain Python, many times slower; pip install 'pymoo_gridpath[fast]'",
             file=sys.stderr,
@@ -168,16 +203,16 @@ def _plan(arguments) -> int:
     if unknown is not None:
         print(f"unknown: {unknown}", flush=True)
     with _StopOnCtrlC() as stop:
-        results = _search(problem, name, spec, algorithm, arguments, stop)
+        results = [] if standing else _search(problem, name, spec, algorithm, arguments, stop)
         stop.searching = False
-        if not any(len(result.pop) for result in results):
+        if results and not any(len(result.pop) for result in results):
             say(f"no path was found: {results[0].message}")
             return EXIT_FAILED
-        trade_off, files = _write_paths(results, arguments, name, source, stop.requested)
+        trade_off, files = _write_paths(problem, results, arguments, name, source, stop.requested, resumed)
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
-    elif results[0].success is False:
+    elif results and results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
     print(trade_off.table(max_rows=MAX_ROWS))
     if arguments.show:
@@ -187,6 +222,7 @@ def _plan(arguments) -> int:
     if len(results) > 1:
         print(f"{sum(_n_legal(result.algorithm) > 0 for result in results)} of {len(results)} runs found a legal path")
     print("written: " + ", ".join(visible(file) for file in files), flush=True)
+    write_waypoints(trade_off, arguments)
     history = [result.algorithm.callback for result in results if isinstance(result.algorithm.callback, ConvergenceRecorder)]
     figures = save_figures(trade_off, arguments.output, history=history or None, units=arguments.units)
     print("figures: " + ", ".join(visible(file) for file in figures))
@@ -256,13 +292,23 @@ def _settle_options(spec, name: str, arguments) -> None:
     arguments.generations, arguments.runs = arguments.generations or 200, arguments.runs or 1
 
 
-def _algorithm(name: str, spec, problem, arguments, **more):
-    """Return the algorithm or planner; of the time and of what is given besides, a planner gets what it takes."""
+def _algorithm(name: str, spec, problem, arguments, start=None, **more):
+    """Return the algorithm or planner, one that begins with given genes if there are any.
+
+    Of the time and of what is given besides, a planner gets what it takes.
+    """
     from pymoo_gridpath.algorithms import make_algorithm
+    from pymoo_gridpath.operators import default_operators
+    from pymoo_gridpath.operators.sampling import GivenRows
 
     given: dict[str, Any] = {"pop_size": arguments.pop_size or 200} if spec.takes_pop_size else {}
     if arguments.operators is not None:
         given["operators"] = arguments.operators
+    if start is not None:
+        given["operators"] = {
+            **given.get("operators", {}),
+            "sampling": GivenRows(start, default_operators(problem)["sampling"]),
+        }
     if isinstance(spec, type):
         more = {"max_seconds": arguments.max_seconds, **more}
         given |= {key: value for key, value in more.items() if key in spec.parameters()}
@@ -287,7 +333,17 @@ def _search(problem, name: str, spec, algorithm, arguments, stop: _StopOnCtrlC) 
             planner = _algorithm(name, spec, problem, arguments, watch=watch)
             return minimize_runs(problem, planner, n_runs=arguments.runs, seed=arguments.seed)
         termination = ("n_gen", arguments.generations)
-        return minimize_runs(problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe)
+        if not isinstance(algorithm, list):
+            return minimize_runs(
+                problem, algorithm, termination, arguments.runs, arguments.seed, ConvergenceRecorder(), observe
+            )
+        results = []
+        for k, one in enumerate(algorithm):
+            own = functools.partial(lambda run, _, algorithm: observe(run, algorithm), k)
+            results += minimize_runs(problem, one, termination, 1, arguments.seed + k, ConvergenceRecorder(), own)
+            if stop.requested:
+                break
+        return results
 
 
 def _n_legal(algorithm) -> int:
@@ -296,20 +352,24 @@ def _n_legal(algorithm) -> int:
     return Members(algorithm).n_legal
 
 
-def _write_paths(results, arguments, name: str, source: dict, interrupted: bool):
-    """Return the trade-off set of the runs, and the files that it was written to."""
+def _write_paths(problem, results, arguments, name: str, source: dict, interrupted: bool, resumed=None):
+    """Return the trade-off set of the runs, and the files that it was written to; without a run, the robot stays."""
     from pymoo_gridpath.decision import TradeOffSet
 
     settings = {
-        "algorithm": {"name": name},
-        "robot_radius": arguments.radius,
+        "algorithm": {"name": name if results else None},
+        "robot_radius": problem.grid.robot_radius,
         "source_map": source,
         "interrupted": interrupted,
+        **({} if resumed is None else {"resumed_from_seed": resumed}),
         **given_ground(arguments),
     }
-    trade_off = TradeOffSet.from_results(results, settings=settings)
+    if results:
+        trade_off = TradeOffSet.from_results(results, settings=settings)
+    else:
+        trade_off = TradeOffSet.from_genes(problem, problem.row, settings)
     files = [trade_off.to_csv(arguments.output / "paths.csv"), trade_off.to_json(arguments.output / "paths.json")]
-    return trade_off, files
+    return trade_off, files + write_populations(results, arguments.output)
 
 
 def _make_directory(path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pymoo_gridpath.decision.export import HEADERS, shown_measures
 from pymoo_gridpath.decision.measures import PathMeasures, risk_of
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.fields import obstacle_potential
@@ -41,14 +42,14 @@ def scene_of(trade_off) -> Scene:
     ]
     others = [record.cells for record in trade_off if record.index not in groups]
     grid = problem.grid
-    scene = Scene(grid.occupied, grid.unknown, others, lines, problem.start, problem.goal)
+    scene = Scene(grid.occupied, grid.unknown, others, lines, problem.start, problem.goal, grid.grown_cells)
     return scene.cropped(*drawn_box(trade_off))
 
 
 def html_of(trade_off) -> str:
     """Return a picture of a set beside a table of its named paths."""
-    measures = [name for name in trade_off.measures if name not in ("length_m", "interfering_cells")]
-    rows: list[list[str]] = [["", "path", *map(visible, measures)]]
+    measures = [name for name in shown_measures(trade_off) if name != "interfering_cells"]
+    rows: list[list[str]] = [["", "path", *(visible(HEADERS.get(name, name)) for name in measures)]]
     for name, k in trade_off.named.items():
         rows.append([name if trade_off.feasible else "", str(k), *(f"{trade_off.measures[key][k]:.5g}" for key in measures)])
     title = f"{counted(len(trade_off), 'trade-off path')} on {visible(trade_off.problem.grid.name)}"
@@ -64,18 +65,18 @@ def record_scene(record) -> Scene:
     if record.grid is None:
         # Of a record made by hand nothing else is known.
         low, high = record.cells.min(axis=0), record.cells.max(axis=0) + 1
-        return Scene(np.zeros((high[1], high[0]), dtype=bool), None, [], [line], *ends).cropped(*low, *high)
+        return Scene(np.zeros((high[1], high[0]), dtype=bool), None, [], [line], ends[0], ends[1]).cropped(*low, *high)
     grid = record.grid
-    return Scene(grid.occupied, grid.unknown, [], [line], *ends).cropped(*grid.box_of(ends[0]))
+    return Scene(grid.occupied, grid.unknown, [], [line], ends[0], ends[1], grid.grown_cells).cropped(*grid.box_of(ends[0]))
 
 
 def record_html(record) -> str:
     """Return a picture of a path beside its measures."""
     rows = {
-        "length": f"{record.length:.5g} cells" + ("" if record.length_m is None else f", {record.length_m:.5g} m"),
+        "length": f"{record.length:.5g} cells" if record.length_m is None else f"{record.length_m:.5g} m",
         "vulnerability": f"{record.vulnerability:.5g}",
         "turn": f"{record.turn:g}\u00b0",
-        "clearance": f"{record.clearance:.5g} cells",
+        "clearance": f"{record.clearance:.5g} cells" if record.clearance_m is None else f"{record.clearance_m:.5g} m",
         **({"occupied cells crossed": record.interfering_cells} if record.interfering_cells else {}),
         **{visible(name): f"{value:.5g}" for name, value in record.objectives.items() if not hasattr(record, name)},
     }

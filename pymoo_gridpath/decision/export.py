@@ -13,17 +13,19 @@ import numpy as np
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.provenance import describe_problem, plain
 from pymoo_gridpath.errors import GridPathError, counted
+from pymoo_gridpath.grid import Cell, OccupancyGrid
 
 FORMAT = "pymoo_gridpath trade-off set"
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 
-_HEADERS = {
+HEADERS = {
     "length": "length",
     "length_m": "length [m]",
     "vulnerability": "vulnerability",
     "turn": "turn [deg]",
     "interfering_cells": "interfering",
     "clearance": "clearance",
+    "clearance_m": "clearance [m]",
 }
 
 
@@ -64,11 +66,14 @@ def json_text(trade_off) -> str:
         "best": {objective.name: objective.best for objective in problem.objectives if objective.best},
         "feasible": trade_off.feasible,
     }
-    runs = json.dumps(runs_of(problem.grid.occupied))
+    grids = {"occupied_runs": problem.grid}
+    if problem.grid.original is not problem.grid:
+        grids["original_runs"] = problem.grid.original
+    runs = "".join(f' "{key}": {json.dumps(runs_of(grid.occupied))},\n' for key, grid in grids.items())
     records = [json.dumps(plain(record.as_dict()), allow_nan=False) for record in trade_off]
     lines = ",\n".join(f"  {record}" for record in records)
     start = json.dumps(plain(head), allow_nan=False, indent=1).removesuffix("\n}")
-    return f'{start},\n "occupied_runs": {runs},\n "paths": [\n{lines}\n ]\n}}\n'
+    return f'{start},\n{runs} "paths": [\n{lines}\n ]\n}}\n'
 
 
 def runs_of(occupied: np.ndarray) -> list[int]:
@@ -89,11 +94,11 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     """Return a table for terminals; see `TradeOffSet.table`."""
     if max_rows is not None:
         max_rows = checks.whole("max_rows", max_rows, 0)
-    measures = trade_off.measures
+    measures = shown_measures(trade_off)
     rows = _rows_shown(trade_off, max_rows)
     columns = [["path", *(str(k) for k in rows)]]
     for name, values in measures.items():
-        columns.append([_HEADERS.get(name) or name, *_numbers(values[rows])])
+        columns.append([HEADERS.get(name) or name, *_numbers(values[rows])])
     marks = ["", *(", ".join(trade_off.names(k)) for k in rows)]
     widths = [max(map(len, column)) for column in columns]
     lines = [_heading(trade_off)]
@@ -105,8 +110,8 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
         lines.append(f"... and {hidden} more")
     if trade_off.least_length is not None:
         resolution = trade_off.problem.grid.resolution
-        metres = "" if resolution is None else f" ({trade_off.least_length * resolution:.3f} m)"
-        shortest = f"{trade_off.least_length:.3f}{metres}"
+        cells = trade_off.least_length
+        shortest = f"{cells:.3f}" if resolution is None else f"{cells * resolution:.3f} m"
         still = " where nothing moves" if trade_off.problem.representation.timed else ""
         lines.append(f"for comparison, the shortest of all paths on this grid{still} has length {shortest}")
     if trade_off.advice:
@@ -114,10 +119,27 @@ def table_text(trade_off, max_rows: int | None = None) -> str:
     return "\n".join(lines)
 
 
+def shown_measures(trade_off) -> dict[str, np.ndarray]:
+    """Return the measures that tables show: of those that there are in cells and in metres, the metres."""
+    measures = trade_off.measures
+    # The least clearance, as an objective, is another one than the room beside the robot.
+    kept = [name for name in trade_off.objective_names if name != "length"]
+    return {name: values for name, values in measures.items() if f"{name}_m" not in measures or name in kept}
+
+
 def _heading(trade_off) -> str:
     problem = trade_off.problem
-    heading = f"{counted(len(trade_off), 'trade-off path')} from {problem.start} to {problem.goal} on {problem.grid.name!r}"
+    start, goal = (place_in_words(problem.grid, end) for end in (problem.start, problem.goal))
+    heading = f"{counted(len(trade_off), 'trade-off path')} from {start} to {goal} on {problem.grid.name!r}"
     return heading if trade_off.feasible else f"{heading}\nNOT FEASIBLE: {trade_off.infeasibility}"
+
+
+def place_in_words(grid: OccupancyGrid, cell: Cell) -> str:
+    """Return a cell in words, in metres where the map has them."""
+    if grid.resolution is None:
+        return f"{tuple(cell)}"
+    x, y = (f"{value:.6g}" for value in np.round(grid.to_metres(cell), 6) + 0.0)
+    return f"({x}, {y}) m"
 
 
 def _rows_shown(trade_off, max_rows: int | None) -> Sequence[int]:

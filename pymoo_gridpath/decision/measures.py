@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 
 from pymoo_gridpath.fields import BoxedField, obstacle_potential
 from pymoo_gridpath.objectives import Risk, Vulnerability, boxed_field_of, prepared
 from pymoo_gridpath.problems.members import are_legal
 from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.search.path_clearance import least_distances
+
+# Metres are given to a nanometre: what lies below is the rounding of numbers.
+_DECIMALS = 9
 
 
 def risk_of(problem) -> Risk | None:
@@ -57,3 +64,23 @@ class PathMeasures:
         limited = self.problem.potential_limit is not None
         over = self.problem.over_limit(self.vulnerability(paths)) if limited else None
         return are_legal(paths.interfering_cells, over)
+
+    def clearance_m(self, cells: Sequence[np.ndarray]) -> np.ndarray:
+        """Return the room between a robot on its way and the obstacles of a map in metres, as they were before they grew.
+
+        Parameters
+        ----------
+        cells : sequence of numpy.ndarray of int, each of shape (n_cells, 2)
+            Cells (x, y) of N paths.
+
+        Returns
+        -------
+        numpy.ndarray of float, shape (N,)
+            Metres, see `PathRecord`.
+        """
+        grid, box = self.problem.grid, self.problem.representation.box
+        # What keeps the robot from a cell is no further away than it is wide.
+        reach = math.ceil(grid.growth) + 2
+        away = least_distances(grid.original.occupied, cells, box.grown(reach, grid.shape))
+        metres = away * grid.check_resolution("a clearance in metres")
+        return np.round(metres - grid.robot_radius, _DECIMALS) + 0.0

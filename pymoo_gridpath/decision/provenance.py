@@ -37,6 +37,7 @@ def describe_problem(problem) -> dict:
             "moves": grid.moves,
             "occupied_cells": grid.n_occupied,
             "sha256": grid.digest,
+            **_describe_growth(grid),
         },
         "query": {"start": list(problem.start), "goal": list(problem.goal)},
         "settings": {
@@ -52,6 +53,13 @@ def describe_problem(problem) -> dict:
             **({"movers": representation.timetable.at.swapaxes(0, 1).tolist()} if representation.timed else {}),
         },
     }
+
+
+def _describe_growth(grid: OccupancyGrid) -> dict:
+    """Return by what obstacles grew and what they were before, nothing of a grid on which none did."""
+    if grid.original is grid:
+        return {}
+    return {"robot_radius": grid.robot_radius, "footprint": grid.footprint, "original": describe_source(grid.original)}
 
 
 def describe_run(result) -> dict:

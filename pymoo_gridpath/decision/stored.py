@@ -17,10 +17,11 @@ from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
 from pymoo_gridpath.problems import GridPathProblem
+from pymoo_gridpath.problems.standing import StandingProblem
 from pymoo_gridpath.representations import REPRESENTATIONS
 
-_MEASURES = ("length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance")
-_IN_METRES = ("length_m",)
+_MEASURES = ("length", "length_m", "vulnerability", "turn", "interfering_cells", "clearance", "clearance_m")
+_IN_METRES = ("length_m", "clearance_m")
 _FIELDS = ("cells", "names", "genes", "objectives", *_MEASURES)
 
 # A file of a few bytes shall not take more memory than any real map.
@@ -156,18 +157,27 @@ def _number(value: Any) -> float:
 
 def _grid(content: dict) -> OccupancyGrid:
     stated = content["map"]
-    runs = checks.array("occupied_runs", content["occupied_runs"], (None,), "iu", expected="numbers of cells")
+    grid = _cells(content, "occupied_runs", stated, stated["sha256"])
+    if "original" not in stated:
+        return grid
+    original = _cells(content, "original_runs", stated, stated["original"]["sha256"])
+    return grid.grown_from(original, stated["robot_radius"], stated["footprint"])
+
+
+def _cells(content: dict, key: str, stated: dict, digest: str) -> OccupancyGrid:
+    """Return the grid of the map's place and steps whose cells are found under a key."""
+    runs = checks.array(key, content[key], (None,), "iu", expected="numbers of cells")
     shape = checks.whole("height", stated["height"], 1), checks.whole("width", stated["width"], 1)
     if shape[0] * shape[1] > _MOST_CELLS:
         raise GridPathError(f"the map has {shape[1]} x {shape[0]} cells, expected at most {_MOST_CELLS:,}")
     if (runs < 0).any() or runs.sum(dtype=object) != shape[0] * shape[1]:
-        raise GridPathError(f"occupied_runs is of another size than {shape[1]} x {shape[0]} cells, expected one of all cells")
+        raise GridPathError(f"{key} is of another size than {shape[1]} x {shape[0]} cells, expected one of all cells")
     occupied = np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(shape)
     takes = inspect.signature(OccupancyGrid).parameters
     options = {key: value for key, value in stated.items() if key in takes and key not in ("occupied", "unknown")}
     grid = OccupancyGrid(occupied, **options)
-    if grid.digest != stated["sha256"]:
-        raise GridPathError("occupied_runs does not fit the checksum of the map, expected the file as written")
+    if grid.digest != digest:
+        raise GridPathError(f"{key} does not fit the checksum of the map, expected the file as written")
     return grid
 
 
@@ -180,6 +190,9 @@ def _problem(content: dict, grid: OccupancyGrid, start, goal) -> GridPathProblem
             "itself as load_json(path, problem)"
         )
     objectives = [_objective(stated, content) for stated in settings["objectives"]]
+    penalty = settings["penalty"] if settings["obstacles"] != "constraint" else None
+    if start == goal:
+        return StandingProblem(grid, start, objectives, settings["obstacles"], penalty, settings["potential_limit"])
     cls: Any = REPRESENTATIONS[checks.known("representation", settings["representation"], REPRESENTATIONS)]
     takes = inspect.signature(cls).parameters
     options = {key: settings[key] for key in ("axis", "max_cells") if key in takes and settings[key] is not None}
@@ -190,7 +203,7 @@ def _problem(content: dict, grid: OccupancyGrid, start, goal) -> GridPathProblem
         cls(grid, start, goal, **options),
         objectives,
         settings["obstacles"],
-        settings["penalty"] if settings["obstacles"] != "constraint" else None,
+        penalty,
         settings["potential_limit"],
     )
 

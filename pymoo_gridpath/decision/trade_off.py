@@ -25,6 +25,8 @@ from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.pictures import png
 from pymoo_gridpath.representations.base import representation_of
+from pymoo_gridpath.search.smoother import Smoother
+from pymoo_gridpath.search.waypoints import Waypoints
 from pymoo_gridpath.versions import versions
 
 #: What members of every trade-off set go by, in the order in which tables and figures show them. Before them comes the
@@ -64,12 +66,19 @@ class PathRecord:
     clearance : float
         Least distance of a visited cell's centre from an occupied one's, in cells; ``inf`` on an empty grid. Of a path in time
         also from those of obstacles that move, at the same tick.
+    clearance_m : float or None
+        Least distance in metres between the robot on its way and the map's own obstacles, those of `OccupancyGrid.original`: of
+        the straight lines through the centres of the cells from the nearest edge of an occupied cell, less the `robot_radius`.
+        It is ``inf`` on an empty map, and never below 0 of a legal path on a grid that was inflated once, unless corners may be
+        cut. Obstacles that move of paths in time are not among them. None on a map in cells.
     objectives : dict of str to float
         The plain objectives of the problem, to be minimised: of what is maximised, such as the least clearance, the negative.
     genes : numpy.ndarray, shape (n_var,)
         The row of decision variables that codes it.
     grid : OccupancyGrid, optional
         The map that it leads across.
+    smoother : Smoother, optional
+        What makes waypoints of the paths of its set.
     """
 
     index: int
@@ -82,13 +91,52 @@ class PathRecord:
     turn: float
     interfering_cells: int
     clearance: float
+    clearance_m: float | None
     objectives: dict[str, float]
     genes: np.ndarray = field(repr=False)
     grid: OccupancyGrid | None = field(default=None, repr=False)
+    smoother: Smoother | None = field(default=None, repr=False)
 
     def as_dict(self) -> dict:
-        """Return the record as a dict of its attributes but for the map, arrays as arrays."""
-        return {name: value for name, value in vars(self).items() if name != "grid"}
+        """Return the record as a dict of its attributes but for what it shares with others of its set, arrays as arrays."""
+        return {name: value for name, value in vars(self).items() if name not in ("grid", "smoother")}
+
+    def waypoints(self, tolerance: float | None = None, spacing: float | None = None) -> Waypoints:
+        """Return the few points between which the path can be driven straight, without its stairs.
+
+        Each sees the next, as with the planners that go by line of sight, and the line is as clear of obstacles as the path was
+        there: at each share of a piece's length it is at most ``tolerance`` nearer to an obstacle than the path at the same
+        share of the stretch that the piece replaces. Safe detours stay detours so, which they would not if only the least
+        clearance of the whole path had to be kept. Nor does the line come nearer than the robot's radius, by more than a 32nd
+        of a cell, unless the path does. Distances are from the sides of the obstacles before they grew by that radius, of all
+        points of the line and not of some. From each waypoint the next is the last of the path for which that holds; a step
+        between neighbouring cells of the path always may be taken.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            In metres, or in cells on a map that has no metres; half a cell by default, since centres of cells stand for points
+            half a cell around. Infinity asks for lines of sight alone. Below a 64th of a cell only steps in line are joined.
+        spacing : float, optional
+            Put points between, none further from the next, in the same unit. The corners stay.
+
+        Returns
+        -------
+        Waypoints
+            With length, turn, and least and mean clearance, of the path too (``before``), and ``to_csv``, ``to_nav_path`` and
+            ``to_f1tenth``. Of a path in time they are its cells, a tick each, and neither argument is taken.
+
+        Raises
+        ------
+        GridPathError
+            If the path is not legal, is of no set, or an argument is out of its range.
+        """
+        if self.smoother is None:
+            raise GridPathError("the path is of no set and knows no map, expected a member of a TradeOffSet")
+        if self.interfering_cells:
+            crossed = counted(self.interfering_cells, "occupied cell")
+            raise GridPathError(f"path {self.index} crosses {crossed}, expected a legal path to drive along")
+        return self.smoother.waypoints(self.cells, tolerance, spacing)
 
     def _repr_html_(self) -> str:
         return drawn.record_html(self)
@@ -114,9 +162,9 @@ class TradeOffSet:
     paths : ColumnPaths or CellPaths
         The decoded paths, or what else the representation decodes to.
     measures : dict of str to numpy.ndarray, shape (N,)
-        ``length`` [cells], ``length_m`` (but for maps in cells), ``vulnerability``, ``turn`` [degrees],
-        ``interfering_cells``, ``clearance`` [cells] and every other objective of the problem by its name; of what is
-        maximised, such as the least clearance, itself, of which ``F`` holds the negative.
+        ``length`` [cells], ``length_m``, ``vulnerability``, ``turn`` [degrees], ``interfering_cells``, ``clearance``
+        [cells], ``clearance_m`` and every other objective of the problem by its name; see `PathRecord`. Maps in cells have none
+        in metres. Of what is maximised, such as the least clearance, it is the value itself, of which ``F`` holds the negative.
     feasible : bool
         Whether the paths are legal: no interfering cell, and the potential limit is kept if the problem has one.
     meta : dict
@@ -240,6 +288,8 @@ class TradeOffSet:
             "clearance": np.array([field.take(cells @ (1, grid.width)).min() for cells in self._cells]),
         }
         found["clearance"] = np.minimum(found["clearance"], self.paths.mover_distance)
+        if grid.resolution is not None:
+            found["clearance_m"] = measures.clearance_m(self._cells)
         for objective, values in zip(self.problem.objectives, self.F.T, strict=True):
             found.setdefault(objective.name, -values if objective.maximise else values)
         return found
@@ -332,10 +382,17 @@ class TradeOffSet:
             turn=value["turn"],
             interfering_cells=value["interfering_cells"],
             clearance=value["clearance"],
+            clearance_m=value.get("clearance_m"),
             objectives=dict(zip(self.objective_names, self.F[k].tolist(), strict=True)),
             genes=self.X[k],
             grid=grid,
+            smoother=self.smoother,
         )
+
+    @functools.cached_property
+    def smoother(self) -> Smoother:
+        """What makes waypoints of the paths, see `PathRecord.waypoints`."""
+        return Smoother(self.problem.grid, self.problem.start, self.problem.representation.timed)
 
     # -- words and files ----------------------------------------------------------------------------------------------
 
@@ -367,6 +424,8 @@ class TradeOffSet:
         is over 5 % longer than the shortest of all. Of that nothing is said if length is no objective, if the paths are not
         legal, and where the shortest of all may not be one of them: under a potential limit, and among obstacles that move.
         """
+        if self.problem.start == self.problem.goal:
+            return ""
         return "; ".join(filter(None, (self._of_one_point, self._of_long_paths)))
 
     @property
@@ -404,7 +463,7 @@ class TradeOffSet:
         return f"{', '.join(others)} or {last}" if others else last
 
     def table(self, max_rows: int | None = None) -> str:
-        """Return a plain text table, one line a path, with the names of those that have one.
+        """Return a plain text table, one line a path, with the names of those that have one, in metres where the map has them.
 
         Where length is an objective a line says how long the shortest of all paths is, and another, if those found are much
         longer, what to try: `least_length` and `advice`.

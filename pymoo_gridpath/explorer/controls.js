@@ -53,21 +53,26 @@ function applyFilters() {
 
 // -- files ----------------------------------------------------------------------------------------------------------------
 
-/** Return the waypoints of a path, a cell a line, with the centre of each in metres where the map has them. */
+/** Return the cells of a path that are its waypoints. */
+function corners(path) {
+  const [counts, gaps] = [unpack(page.waypoints.counts), unpack(page.waypoints.gaps)];
+  const first = counts.subarray(0, path).reduce((a, b) => a + b, 0);
+  const cells = paths.cells(path);
+  let place = 0;
+  return Array.from(gaps.subarray(first, first + counts[path]), (gap) => cells[(place += gap)]);
+}
+
+/** Return the waypoints of a path, a line of x, y and heading each, in metres where the map has them. */
 function waypoints(path) {
-  const { resolution, origin } = page.map;
-  const lines = [resolution ? "cell_x,cell_y,x_m,y_m" : "cell_x,cell_y"];
-  for (const [x, y] of paths.cells(path)) {
-    const cell = [x + page.map.corner[0], y + page.map.corner[1]];
-    if (!resolution) {
-      lines.push(cell.join(","));
-      continue;
-    }
-    const [across, up] = cell.map((value) => (value + 0.5) * resolution);
-    const [cos, sin] = [Math.cos(origin[2]), Math.sin(origin[2])];
-    lines.push([...cell, origin[0] + across * cos - up * sin, origin[1] + across * sin + up * cos].join(","));
-  }
-  return `${lines.join("\n")}\n`;
+  const points = corners(path).map(centre);
+  const headings = points.map(([x, y], k) => {
+    const [toX, toY] = points[k + 1] ?? [x, y];
+    return toX === x && toY === y ? null : Math.atan2(toY - y, toX - x);
+  });
+  // A path that waits keeps its heading, and so does its end.
+  let heading = headings.find((angle) => angle !== null) ?? 0;
+  const lines = points.map(([x, y], k) => [x, y, (heading = headings[k] ?? heading)].join(","));
+  return `${["x,y,yaw", ...lines].join("\n")}\n`;
 }
 
 function download() {

@@ -14,15 +14,20 @@ from typing import Any
 import numpy as np
 
 from pymoo_gridpath.decision.drawn import drawn_box, drawn_field
+from pymoo_gridpath.decision.export import place_in_words, shown_measures
 from pymoo_gridpath.errors import counted, visible
 from pymoo_gridpath.grid import Box, OccupancyGrid
+from pymoo_gridpath.objectives import axis_of
 
 # Measures are for people to compare: so many digits tell apart all that figures could.
 _DIGITS = 7
 
-# Measures in cells that are metres on a map which has them, and what a page calls them.
-_LENGTHS = {"length": "Length", "clearance": "Least clearance"}
+# What a page calls measures, and their units.
 _LABELS = {
+    "length": ("Length", "cells"),
+    "length_m": ("Length", "m"),
+    "clearance": ("Least clearance", "cells"),
+    "clearance_m": ("Clearance of the robot", "m"),
     "turn": ("Total turn", "\u00b0"),
     "vulnerability": ("Vulnerability", ""),
     "interfering_cells": ("Occupied cells crossed", ""),
@@ -37,8 +42,9 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
     dict
         ``map`` (name, size in cells, corner: the cell of the whole map that is (0, 0) here, resolution or None, unit, origin),
         ``start``, ``goal``, ``columns`` (key, label, unit, objective or not, maximised or not, values with None for infinity),
-        ``names`` (name and path), ``occupied`` (a bit a cell, row by row from the bottom), ``field`` (0 to 255, or None),
-        ``counts``, ``starts`` and ``steps`` (see `packed_paths`), and texts.
+        ``names`` (name and path), ``occupied`` and ``grown`` (a bit a cell, row by row from the bottom; which of the first are
+        so because obstacles grew, or None), ``field`` (0 to 255, or None), ``counts``, ``starts`` and ``steps`` (see
+        `packed_paths`), ``waypoints`` (see `packed_waypoints`), and texts.
     """
     problem = trade_off.problem
     box = drawn_box(trade_off)
@@ -62,12 +68,21 @@ def page_data(trade_off, title: str) -> dict[str, Any]:
         "caution": _caution(trade_off),
         "file_name": re.sub(r"[^A-Za-z0-9._-]+", "-", title).strip("-.")[:60] or "map",
         "field_label": "Potential",
-        "columns": _columns(trade_off, resolution),
+        "columns": _columns(trade_off),
         "names": [{"name": name, "path": k} for name, k in trade_off.named.items()] if trade_off.feasible else [],
         "occupied": packed(np.packbits(grid.occupied)),
+        "grown": None if grid.grown_cells is None else packed(np.packbits(grid.grown_cells)),
+        "grown_label": _grown_label(problem.grid),
         "field": None if field is None else packed(field),
         **packed_paths(cells),
+        "waypoints": packed_waypoints(trade_off),
     }
+
+
+def _grown_label(grid: OccupancyGrid) -> str:
+    """Return what the cells are called in which a robot would touch an obstacle."""
+    unit = "cells" if grid.resolution is None else "m"
+    return f"Too near for {'a radius' if grid.footprint is None else 'a footprint'} of {grid.robot_radius:.3g} {unit}"
 
 
 def packed(array: np.ndarray) -> dict:
@@ -119,6 +134,19 @@ def unpacked_paths(data: dict) -> list[np.ndarray]:
     return [np.cumsum([first, *part], axis=0) for first, part in zip(starts, np.split(steps, ends), strict=True)]
 
 
+def packed_waypoints(trade_off) -> dict | None:
+    """Return which cells of the paths are their waypoints: how many each has, and the steps up to each from the last.
+
+    None of paths that are not legal, which nobody is to drive along.
+    """
+    if not trade_off.feasible:
+        return None
+    places = [trade_off.smoother.places(record.cells) for record in trade_off]
+    counts = np.array([len(one) for one in places], dtype=np.uint32)
+    gaps = np.concatenate([np.diff(one, prepend=0) for one in places]).astype(np.uint32)
+    return {"counts": packed(counts), "gaps": packed(gaps)}
+
+
 def _levels(field: np.ndarray, grid: OccupancyGrid) -> np.ndarray | None:
     """Return a field as shares of its largest value in a free cell, 0 to 255; nothing is shown where cells are occupied."""
     free = np.where(grid.occupied, 0.0, field)
@@ -141,31 +169,29 @@ def _summary(trade_off, box: Box, resolution: float | None) -> str:
         size += f" of {resolution:g} m"
     if box != whole.whole:
         size += f", of which {box.x1 - box.x0} x {box.y1 - box.y0} are shown"
-    ends = f"from cell {problem.start[0]}, {problem.start[1]} to {problem.goal[0]}, {problem.goal[1]}"
-    return f"{counted(len(trade_off), 'trade-off path')} {ends}; {size}"
+    ends = " to ".join(place_in_words(whole, end) for end in (problem.start, problem.goal))
+    return f"{counted(len(trade_off), 'trade-off path')} from {ends}; {size}"
 
 
-def _columns(trade_off, resolution: float | None) -> list[dict]:
-    """Return the objectives of a set, and after them its other measures."""
-    names = trade_off.objective_names
-    others = [name for name in trade_off.measures if name not in names and name != "length_m"]
+def _columns(trade_off) -> list[dict]:
+    """Return the objectives of a set, and after them its other measures, lengths in metres where the map has them."""
+    measures, columns = shown_measures(trade_off), []
     if trade_off.feasible:
-        others.remove("interfering_cells")  # they cross none
-    labels = {objective.name: objective.label for objective in trade_off.problem.objectives}
-    maximised = [objective.name for objective in trade_off.problem.objectives if objective.maximise]
-    columns = []
-    for name in [*names, *others]:
-        values = np.asarray(trade_off.measures[name])
-        if name in _LENGTHS:
-            label, unit = _LENGTHS[name], "cells" if resolution is None else "m"
-            values = values * (1.0 if resolution is None else resolution)
-        elif name in _LABELS:
-            label, unit = _LABELS[name]
-        else:
-            label, unit = _split(visible(labels.get(name, name)))
-        flags = {"objective": name in names, "maximise": name in maximised}
-        columns.append({"key": name, "label": label, "unit": unit, **flags, "values": [*map(_number, values.tolist())]})
-    return columns
+        del measures["interfering_cells"]  # they cross none
+    for objective in trade_off.problem.objectives:
+        label, scale = axis_of(objective, trade_off.problem.grid)
+        words, unit = _LABELS.get(objective.name) or _split(visible(label))
+        in_metres = objective.in_cells and trade_off.problem.grid.resolution is not None
+        values = trade_off.measures[objective.name] * scale
+        columns.append(_column(objective.name, words, "m" if in_metres else unit, values, True, objective.maximise))
+        # Of the length there is the same in metres.
+        measures.pop("length_m" if in_metres and objective.name == "length" else objective.name, None)
+    return columns + [_column(name, *_LABELS.get(name, (name, "")), values) for name, values in measures.items()]
+
+
+def _column(key: str, label: str, unit: str, values: np.ndarray, objective: bool = False, maximise: bool = False) -> dict:
+    flags = {"objective": objective, "maximise": maximise}
+    return {"key": key, "label": label, "unit": unit, **flags, "values": [*map(_number, np.asarray(values).tolist())]}
 
 
 def _split(label: str) -> tuple[str, str]:

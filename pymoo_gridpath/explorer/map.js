@@ -89,7 +89,8 @@ class MapView {
     [this.width, this.height] = page.map.size;
     this.occupied = unpack(page.occupied);
     this.field = page.field && unpack(page.field);
-    this.layers = { occupied: true, field: true, others: true, named: false };
+    this.grown = page.grown && unpack(page.grown);
+    this.layers = { occupied: true, grown: true, field: true, others: true, named: false };
     this.backdrop = newCanvas(1, 1);
     this.fitView();
   }
@@ -137,14 +138,16 @@ class MapView {
     const cells = newCanvas(width, height);
     const context = cells.getContext("2d");
     const image = context.createImageData(width, height);
-    const [free, occupied, field] = ["free", "occupied", "field"].map((name) => parts(color(name)));
+    const [free, occupied, grown, field] = ["free", "occupied", "grown", "field"].map((name) => parts(color(name)));
+    const has = (bits, at) => bits && (bits[at >> 3] >> (7 - (at & 7))) & 1;
     for (let y = 0, at = 0; y < height; y++) {
       let dot = (height - 1 - y) * width * 4;
       for (let x = 0; x < width; x++, at++, dot += 4) {
-        const blocked = this.layers.occupied && (this.occupied[at >> 3] >> (7 - (at & 7))) & 1;
+        const near = has(this.grown, at);
+        const blocked = has(this.occupied, at) && this.layers[near ? "grown" : "occupied"];
         const share = this.field && this.layers.field && !blocked ? (0.8 * this.field[at]) / 255 : 0;
         for (let k = 0; k < 3; k++) {
-          image.data[dot + k] = blocked ? occupied[k] : free[k] + (field[k] - free[k]) * share;
+          image.data[dot + k] = blocked ? (near ? grown : occupied)[k] : free[k] + (field[k] - free[k]) * share;
         }
         image.data[dot + 3] = 255;
       }

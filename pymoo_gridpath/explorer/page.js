@@ -152,9 +152,15 @@ function buildAxes() {
 }
 
 function buildLayers() {
-  const labels = { occupied: "Obstacles", field: page.field_label, others: "Other paths", named: "Named paths" };
+  const labels = {
+    occupied: "Obstacles",
+    grown: page.grown_label,
+    field: page.field_label,
+    others: "Other paths",
+    named: "Named paths",
+  };
   for (const [layer, label] of Object.entries(labels)) {
-    if ((layer === "field" && !page.field) || (layer === "named" && !names.length)) continue;
+    if ((layer in page && !page[layer]) || (layer === "named" && !names.length)) continue;
     const box = element("input", {
       type: "checkbox",
       checked: map.layers[layer],
@@ -239,15 +245,20 @@ function listenToMap() {
   );
 }
 
-function describe(x, y, n) {
+/** Return where the centre of a cell of the page is on the whole map, in metres where it has them. */
+function centre([x, y]) {
   const { resolution, origin, corner } = page.map;
   const cell = [x + corner[0], y + corner[1]];
-  let text = `cell ${cell[0]}, ${cell[1]}`;
-  if (resolution) {
-    const [across, up] = cell.map((value) => (value + 0.5) * resolution);
-    const [cos, sin] = [Math.cos(origin[2]), Math.sin(origin[2])];
-    text += `; ${(origin[0] + across * cos - up * sin).toFixed(2)} m, ${(origin[1] + across * sin + up * cos).toFixed(2)} m`;
-  }
+  if (!resolution) return cell;
+  const [across, up] = cell.map((value) => (value + 0.5) * resolution);
+  const [cos, sin] = [Math.cos(origin[2]), Math.sin(origin[2])];
+  return [origin[0] + across * cos - up * sin, origin[1] + across * sin + up * cos];
+}
+
+function describe(x, y, n) {
+  const { resolution, corner } = page.map;
+  let text = `cell ${x + corner[0]}, ${y + corner[1]}`;
+  if (resolution) text += `; ${centre([x, y]).map((value) => `${value.toFixed(2)} m`).join(", ")}`;
   return n ? `${text}; ${n === 1 ? "one path passes" : `${n} paths pass`}` : text;
 }
 
@@ -295,6 +306,7 @@ listenToMap();
 byId("previous").addEventListener("click", () => step(-1));
 byId("next").addEventListener("click", () => step(1));
 byId("download").addEventListener("click", download);
+byId("download").hidden = !page.waypoints;
 const zooms = { "zoom-in": () => map.zoom(1.5), "zoom-out": () => map.zoom(1 / 1.5), "zoom-fit": () => map.fitView() };
 for (const [id, zoom] of Object.entries(zooms)) {
   byId(id).addEventListener("click", () => {

@@ -15,6 +15,9 @@ from pymoo_gridpath.neighbourhood import MOVES, ONE_SIDE
 
 Cell = tuple[int, int]
 
+#: Corners of a robot's outline, metres in its own frame.
+Footprint = tuple[tuple[float, float], ...]
+
 #: Whether a diagonal step may touch an occupied cell: never, always, or one of the two beside it.
 CornerCutting = bool | Literal["one side"]
 
@@ -85,6 +88,15 @@ def as_pose(origin) -> tuple[float, ...]:
     if len(pose) not in (2, 3):
         raise GridError(f"origin is {shown(origin)}, expected {expected}")
     return pose if len(pose) == 3 else (*pose, 0.0)
+
+
+def as_footprint(corners) -> Footprint:
+    """Return the corners of a robot's outline."""
+    expected = "the corners (x, y) of the robot in metres, three or more"
+    found = checks.array("footprint", corners, (None, 2), expected=expected, finite=True, error=GridError).astype(float)
+    if len(found) < 3 or not (found != found[0]).any():
+        raise GridError(f"footprint is {shown(corners)}, expected {expected}")
+    return tuple(map(tuple, found.tolist()))
 
 
 def pairs(name: str, values: ArrayLike, what: str) -> np.ndarray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,11 +14,10 @@ from scipy.sparse import csgraph
 
 from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import GridError, GridPathWarning, UnreachableError, visible
+from pymoo_gridpath.errors import GridError, UnreachableError, visible
 from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_pose, as_resolution, pairs
 from pymoo_gridpath.grid.box import Box
-from pymoo_gridpath.grid.cells import Cells
-from pymoo_gridpath.grid.inflation import disc_of, grown_by
+from pymoo_gridpath.grid.grown import GrownCells, Growth
 from pymoo_gridpath.grid.occupancy_values import blocks_of, cells_of_occupancy, decimal_of
 from pymoo_gridpath.neighbourhood import steps_in_words
 
@@ -31,7 +29,7 @@ _FARTHEST = 2.0**52
 _LEAST_BOXED, _MOST_REACHED = 2**16, 0.25
 
 
-class OccupancyGrid(Cells):
+class OccupancyGrid(GrownCells):
     """A rectangular grid of free and occupied cells, immutable in use.
 
     A cell is ``(x, y)`` with x to the right and y *up*, from ``(0, 0)`` at the bottom left; arrays are indexed ``[y, x]``.
@@ -169,7 +167,7 @@ class OccupancyGrid(Cells):
     def replace(self, **changes) -> OccupancyGrid:
         """Return a copy in which the named constructor arguments are changed.
 
-        Unknown cells are forgotten if ``occupied`` has another shape.
+        Unknown cells are forgotten if ``occupied`` has another shape, and what obstacles were grown from if it is changed.
         """
         if "occupied" in changes:
             changes["occupied"] = as_cells("occupied", changes["occupied"])
@@ -185,7 +183,11 @@ class OccupancyGrid(Cells):
         unknown = set(changes) - set(arguments)
         if unknown:
             raise TypeError(f"replace() has no argument {shown(sorted(unknown)[0])}, expected one of {', '.join(arguments)}")
-        return OccupancyGrid(**{**arguments, **changes})
+        made = OccupancyGrid(**{**arguments, **changes})
+        if "occupied" in changes:
+            return made
+        shared = {key: value for key, value in changes.items() if key != "unknown"}
+        return self._with_growth(made, lambda original: original.replace(**shared), made._cell / self._cell)
 
     def __eq__(self, other) -> bool:
         if not isinstance(other, OccupancyGrid):
@@ -201,7 +203,7 @@ class OccupancyGrid(Cells):
     def __reduce__(self):
         # Through the constructor, because pickling an array drops its read-only flag.
         arguments = self._occupied, self._resolution, self._origin, self._corner_cutting, self._name, self._unknown
-        return OccupancyGrid, (*arguments, self._moves)
+        return _restored, ((*arguments, self._moves), self._growth)
 
     def __repr__(self) -> str:
         return (
@@ -214,12 +216,13 @@ class OccupancyGrid(Cells):
         return "" if self._resolution is None else f" of {self._resolution:g} m"
 
     def _repr_png_(self) -> bytes:
-        return pictures.png(pictures.Scene(self._occupied, self._unknown))
+        return pictures.png(pictures.Scene(self._occupied, self._unknown, grown=self.grown_cells))
 
     def _repr_html_(self) -> str:
         rows = {
             "cells": f"{self.width} x {self.height}{self._of_metres}",
             "occupied": f"{self.n_occupied} ({self.n_occupied / self._occupied.size:.0%})",
+            **({} if self.original is self else {"of these grown": f"{self.n_occupied - self.original.n_occupied}"}),
             "steps": steps_in_words(self._moves, self._corner_cutting),
         }
         return pictures.page(self._repr_png_(), visible(self._name), rows, "map, occupied cells dark")
@@ -418,11 +421,12 @@ class OccupancyGrid(Cells):
             return self
         occupied = self._occupied[box.slices]
         if self._resolution is None:
-            return self.replace(occupied=occupied)
+            return self._with_growth(self.replace(occupied=occupied), lambda original: original.crop(box))
         x0, y0, yaw = self._origin
         dx, dy = box.x0 * self._resolution, box.y0 * self._resolution
         cos, sin = math.cos(yaw), math.sin(yaw)
-        return self.replace(occupied=occupied, origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw))
+        made = self.replace(occupied=occupied, origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw))
+        return self._with_growth(made, lambda original: original.crop(box))
 
     def downsample(self, factor: int) -> OccupancyGrid:
         """Return a grid of larger cells, each of ``factor`` x ``factor`` of these, occupied where any of them is.
@@ -440,58 +444,8 @@ class OccupancyGrid(Cells):
         unknown = None if self._unknown is None else blocks_of(self._unknown, factor, False)
         occupied = blocks_of(self._occupied, factor, True)
         resolution = None if self._resolution is None else factor * self._resolution
-        return self.replace(occupied=occupied, unknown=unknown, resolution=resolution)
-
-    def inflate(self, radius: float) -> OccupancyGrid:
-        """Return a grid on which a disc of ``radius`` metres can be planned for as a point.
-
-        A cell becomes occupied when a disc centred in it would overlap the square of an occupied cell. The edge of the grid
-        is not an obstacle.
-
-        Raises
-        ------
-        GridError
-            If the radius is negative or not finite, or not zero on a map in cells, for which there is `grow`.
-
-        Warns
-        -----
-        GridPathWarning
-            If the radius is not zero but too small to have an effect: at most half a cell.
-        """
-        grown = self.grow(self.radius_in_cells(radius))
-        if grown is self and radius > 0:
-            warnings.warn(
-                f"the robot radius of {radius:g} m is at most half a cell of {self._name!r}, {self._resolution:g} m "
-                "wide, so that no obstacle grows",
-                GridPathWarning,
-                stacklevel=2,
-            )
-        return grown
-
-    def grow(self, cells: float) -> OccupancyGrid:
-        """Return what `inflate` does for a radius that is given in cells, without a warning; half a cell or less grows nothing.
-
-        Raises
-        ------
-        GridError
-            If the number is negative or not finite.
-        """
-        cells = checks.number("growth", cells, 0.0, expected="a number of cells, zero or more", error=GridError)
-        disc = disc_of(cells, max(self.shape))
-        return self if disc.sum() <= 1 else self.replace(occupied=grown_by(self._occupied, disc, self._free_box))
-
-    def radius_in_cells(self, radius: float) -> float:
-        """Return the radius of a robot, given in metres, in cells; at most the width and height together, which cover all.
-
-        Raises
-        ------
-        GridError
-            If the radius is negative or not finite, or not zero on a map in cells.
-        """
-        radius = checks.number("robot radius", radius, 0.0, expected="a number of metres, zero or more", error=GridError)
-        if radius == 0.0:
-            return 0.0
-        return min(radius / self.check_resolution("a radius in metres"), float(sum(self.shape)))
+        made = self.replace(occupied=occupied, unknown=unknown, resolution=resolution)
+        return self._with_growth(made, lambda original: original.downsample(factor))
 
     def shortest_lengths(self, start: Sequence[int], limit: float = math.inf) -> np.ndarray:
         """Return the length in cells of the shortest path from ``start`` to every cell.
@@ -534,6 +488,13 @@ class OccupancyGrid(Cells):
     @functools.cached_property
     def _graphs(self) -> dict[Box, sparse.csr_array]:
         return {}
+
+
+def _restored(arguments: tuple, growth: Growth | None) -> OccupancyGrid:
+    """Return the grid of constructor arguments, grown from another if it was."""
+    grid = OccupancyGrid(*arguments)
+    grid._growth = growth
+    return grid
 
 
 def check_box(box: Box, grid: OccupancyGrid) -> Box:

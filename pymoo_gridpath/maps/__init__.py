@@ -14,6 +14,8 @@ from pymoo_gridpath.maps.movingai import ScenQuery, read_movingai, read_scen, re
 from pymoo_gridpath.maps.queries import query_of
 from pymoo_gridpath.maps.raster import read_raster
 from pymoo_gridpath.maps.ros import read_ros
+from pymoo_gridpath.maps.ros_message import grid_of_message, read_ros_message
+from pymoo_gridpath.maps.rosbag import read_rosbag
 from pymoo_gridpath.maps.save import save_map
 from pymoo_gridpath.maps.shipped import ShippedMap, load_shipped, shipped_maps
 from pymoo_gridpath.maps.text import TextHeader, read_text, read_text_header
@@ -28,6 +30,7 @@ __all__ = [
     "TextHeader",
     "check_size",
     "format_of",
+    "grid_of_message",
     "load_map",
     "load_shipped",
     "make_grid",
@@ -38,6 +41,8 @@ __all__ = [
     "read_npy",
     "read_raster",
     "read_ros",
+    "read_ros_message",
+    "read_rosbag",
     "read_scen",
     "read_string",
     "read_terrain",

@@ -76,6 +76,9 @@ class Objective(ABC):
         What a penalty of 1 adds to it: 1, or the objective's own step where it counts in larger ones.
     local : bool
         Whether the cost of a cell depends on its neighbourhood alone, so that `field_in` does not work out the whole field.
+    in_cells : bool
+        Whether its values are lengths in cells, which tables, figures and pages give in metres of a map that states its
+        resolution. Its label says ``[cells]`` then.
 
     Examples
     --------
@@ -116,6 +119,7 @@ class Objective(ABC):
     best: str = ""
     penalty_unit: float = 1.0
     local: bool = False
+    in_cells: bool = False
 
     def on(self, grid: OccupancyGrid) -> Objective:
         """Return the objective with everything written out that a map decides where it is not given; itself if that is nothing.
@@ -229,6 +233,7 @@ class Length(Objective):
 
     name = "length"
     label = "Path length [cells]"
+    in_cells = True
     best = "shortest"
 
     def moves(self, grid):
@@ -297,6 +302,13 @@ def make_objectives(objectives: Sequence[str | Objective] | str | Objective) -> 
     if not names or len(set(names)) < len(names):
         raise GridPathError(f"objectives are {shown(names)}, expected one or more, each once")
     return tuple(made)
+
+
+def axis_of(objective: Objective, grid: OccupancyGrid) -> tuple[str, float]:
+    """Return what an axis of a figure says of an objective on a map, and by what its values are multiplied there."""
+    if objective.in_cells and grid.resolution is not None:
+        return objective.label.replace("[cells]", "[m]"), grid.resolution
+    return objective.label, 1.0
 
 
 def field_of(objective: Objective, grid: OccupancyGrid, box: Box | None = None) -> np.ndarray | None:

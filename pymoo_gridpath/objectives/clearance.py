@@ -40,6 +40,7 @@ class LeastClearance(Objective):
     combine = "least"
     maximise = True
     best = "widest"
+    in_cells = True
 
     def field(self, grid):
         distance = clearance(grid)

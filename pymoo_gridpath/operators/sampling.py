@@ -31,3 +31,26 @@ class RandomSampling(Sampling):
         low, high = problem.xl.astype(np.int64), problem.xu.astype(np.int64)
         X = random_state.integers(low, high, size=(n_samples, problem.n_var), endpoint=True)
         return X.astype(problem.vtype)
+
+
+class GivenRows(Sampling):
+    """Rows of genes to begin with, as many as the population has; of a larger one the others are sampled.
+
+    Parameters
+    ----------
+    X : numpy.ndarray, shape (N, n_var)
+    others : pymoo.core.sampling.Sampling
+    """
+
+    knows_paths = True
+
+    def __init__(self, X: np.ndarray, others: Sampling):
+        super().__init__()
+        self.X, self.others = X, others
+
+    def _do(self, problem, n_samples, *args, random_state=None, **kwargs):
+        missing = n_samples - len(self.X)
+        if missing <= 0:
+            return self.X[:n_samples].copy()
+        others = self.others.do(problem, missing, random_state=random_state, **kwargs).get("X")
+        return np.concatenate([self.X, others.astype(self.X.dtype)])

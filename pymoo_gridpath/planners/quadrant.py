@@ -17,7 +17,8 @@ from pymoo_gridpath.representations.base import representation_of
 from pymoo_gridpath.search.alternatives import GOAL, NOWHERE, cost_of, measure, quickest, unfold
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.quadrant import Branches, branches, octile
-from pymoo_gridpath.search.sight import Waypoints, smoothed
+from pymoo_gridpath.search.sight import smoothed
+from pymoo_gridpath.search.waypoints import Waypoints
 
 # Larger numbers of paths say no more than their size.
 _MOST_WRITTEN = 10**12
@@ -161,7 +162,7 @@ class QuadrantSelection(Planner):
         self.found = QuadrantPaths(
             _split(moves, raw),
             seconds,
-            [Waypoints.of(grid, moves.cells(waypoints)) for waypoints, _ in chosen],
+            [Waypoints(grid, moves.cells(waypoints)) for waypoints, _ in chosen],
             _count(found.to, order),
             found.n_probes,
             found.n_cells,

@@ -22,7 +22,8 @@ from pymoo_gridpath.representations.base import Representation, representation_o
 from pymoo_gridpath.search.counted import best_first
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.road import way_to, with_legal_steps
-from pymoo_gridpath.search.sight import Waypoints, path_length, shorten
+from pymoo_gridpath.search.sight import path_length, shorten
+from pymoo_gridpath.search.waypoints import Waypoints
 
 _ROADS, _SEARCHES = ("skeleton", "shortest"), ("best", "shortest")
 
@@ -232,7 +233,7 @@ class RegionOfSight(Planner):
             np.array([one.radius for one in sighted]),
             [moves.cells(one.initial) for one in sighted],
             [moves.cells(one.cells) for one in sighted],
-            [Waypoints.of(grid, moves.cells(one.waypoints)) for one in sighted],
+            [Waypoints(grid, moves.cells(one.waypoints)) for one in sighted],
             [one.lengths for one in sighted],
             np.array([one.fallback for one in sighted], dtype=bool),
         )

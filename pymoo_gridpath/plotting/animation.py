@@ -20,9 +20,11 @@ from matplotlib.ticker import MaxNLocator
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, counted, visible
 from pymoo_gridpath.files import write_whole
+from pymoo_gridpath.objectives import axis_of
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.fronts import staircase
-from pymoo_gridpath.plotting.maps import Units, plot_map
+from pymoo_gridpath.plotting.maps import plot_map
+from pymoo_gridpath.plotting.style import Units
 from pymoo_gridpath.problems import MovingObstaclesProblem, ObstacleClock
 from pymoo_gridpath.quality import ReferenceFront
 
@@ -43,7 +45,7 @@ def animate_moving(
     file: str | os.PathLike[str] | None = None,
     reference: bool = True,
     potential: bool = True,
-    units: Units = "cells",
+    units: Units | None = None,
     fps: float = 1.0,
     dpi: float = 150,
 ) -> FuncAnimation:
@@ -64,7 +66,7 @@ def animate_moving(
         of its hypervolume that has.
     potential : bool, default True
         Whether to draw the obstacles' potential, as in `plot_map`.
-    units : {"cells", "m"}, default "cells"
+    units : {"cells", "m"}, optional
         What the axes of the map measure.
     fps : float, default 1
         Pictures a second.
@@ -87,7 +89,7 @@ def animate_moving(
     if problem.n_obj < 2:
         raise GridPathError("a front of one objective cannot be drawn, expected a run with two or more")
     reference, potential = checks.flag("reference", reference), checks.flag("potential", potential)
-    style.check_units(units, problem.grid)
+    units = style.check_units(units, problem.grid)
     fps = checks.number("fps", fps, 0.0, 60.0, above=True, expected="pictures a second, above 0, at most 60")
     dpi = checks.number("dpi", dpi, 10.0, _MOST_DPI, expected=f"dots per inch, 10 to {_MOST_DPI}")
     writer = None if file is None else _writer(file)
@@ -117,6 +119,8 @@ class _Film:
             ratios = [1.0, 0.8] if wide else [1.0, 1.0]
             options: dict[str, Any] = {"height_ratios": ratios} if wide else {"width_ratios": ratios}
             self.axes = self.figure.subplots(2 if wide else 1, 1 if wide else 2, **options)
+        words = [axis_of(objective, grid) for objective in self.problem.objectives]
+        self.units_of = [label for label, _ in words], np.array([scale for _, scale in words])
         self.limits = self._limits()
         self.draw(0)
         # Laid out once, so that nothing jumps from picture to picture.
@@ -182,7 +186,8 @@ class _Film:
         return cells if self.units == "cells" else self.problem.grid.to_metres(cells)
 
     def _draw_front(self, ax: Axes, frame: int) -> None:
-        F, front = self.clock.F[frame], self.fronts[frame]
+        F, front = self.clock.F[frame] * self.units_of[1], self.fronts[frame]
+        front = front if front is None else front * self.units_of[1]
         plane = self.problem.n_obj == 2
         ring: dict[str, Any] = {
             "marker": "o",
@@ -197,10 +202,11 @@ class _Film:
         if len(F):
             ax.scatter(*F[:, :2].T, s=30, c=self._shades(frame), zorder=3, linewidths=0)
         low, high = self.limits
-        ax.set_xlim(low[0], high[0])
-        ax.set_ylim(low[1], high[1])
-        for axis, objective in zip((ax.xaxis, ax.yaxis), self.problem.objectives[:2], strict=True):
-            axis.set_label_text(style.label_axis(axis, objective.label, objective.maximise))
+        labels, scales = self.units_of
+        ax.set_xlim(low[0] * scales[0], high[0] * scales[0])
+        ax.set_ylim(low[1] * scales[1], high[1] * scales[1])
+        for axis, objective, label in zip((ax.xaxis, ax.yaxis), self.problem.objectives[:2], labels[:2], strict=True):
+            axis.set_label_text(style.label_axis(axis, label, objective.maximise))
         ax.xaxis.set_major_locator(MaxNLocator(6))
         for side in ("top", "right"):
             ax.spines[side].set_visible(False)

@@ -83,7 +83,8 @@ def plot_convergence(
                 evaluations[shown], low[shown], high[shown], step="post", color=color, alpha=0.2, linewidth=0, label=band
             )
         _mark_first(ax, recorders, color, brief=label is not None)
-        _dress(ax, quantity)
+        axis = _LABELS[quantity]
+        _dress(ax, axis if _metres(recorders) is None else axis.replace("[cells]", "[m]"))
     return ax
 
 
@@ -105,13 +106,20 @@ def as_recorders(history) -> list[ConvergenceRecorder]:
 
 def _series(recorders: list[ConvergenceRecorder], quantity: Quantity, reference_point) -> list[np.ndarray]:
     if quantity == "length":
-        return [np.array(recorder.best_length) for recorder in recorders]
+        metres = _metres(recorders) or 1.0
+        return [metres * np.array(recorder.best_length) for recorder in recorders]
     if quantity == "vulnerability":
         return [np.array(recorder.best_vulnerability) for recorder in recorders]
     if reference_point is None:
         own = [recorder.reference_point for recorder in recorders]
         reference_point = own[0] if own[0] is not None else common_reference_point(recorders)
     return [recorder.hypervolume(reference_point) for recorder in recorders]
+
+
+def _metres(recorders: list[ConvergenceRecorder]) -> float | None:
+    """Return the metres a cell of the maps of runs, if they all have the same."""
+    found = {recorder.resolution for recorder in recorders}
+    return found.pop() if len(found) == 1 else None
 
 
 def _common(recorders: list[ConvergenceRecorder], series: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -141,9 +149,9 @@ def _mark_first(ax: Axes, recorders: list[ConvergenceRecorder], color: str, brie
     ax.axvline(evaluation, color=color, linewidth=0.9, linestyle=":", zorder=2, label=words)
 
 
-def _dress(ax: Axes, quantity: Quantity) -> None:
+def _dress(ax: Axes, label: str) -> None:
     ax.set_xlabel("Evaluations")
-    ax.set_ylabel(_LABELS[quantity])
+    ax.set_ylabel(label)
     style.widen_limits(ax)
     ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
     curves = [np.asarray(line.get_xydata(), dtype=float) for line in ax.lines if line.get_drawstyle() == "steps-post"]

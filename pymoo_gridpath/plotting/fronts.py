@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import check_set
 from pymoo_gridpath.errors import GridPathError, visible
+from pymoo_gridpath.objectives import axis_of
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.labels import place_labels
 
@@ -23,7 +24,7 @@ def plot_front(
     reference_label: str = "reference front",
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the front of a trade-off set with its named paths marked.
+    """Draw the front of a trade-off set with its named paths marked; lengths are in metres where the map has them.
 
     Parameters
     ----------
@@ -58,6 +59,7 @@ def plot_front(
     columns = _columns(check_set(trade_off), objectives)
     groups = style.by_path(trade_off, which)
     other = as_reference(trade_off, reference)
+    other = None if other is None else _on_axes(trade_off, other)
     reference_label = visible(checks.text("reference_label", reference_label))
     style.check_axes(ax)
     solid = len(columns) == 3
@@ -111,7 +113,7 @@ def staircase(F: np.ndarray) -> np.ndarray:
 
 
 def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: str) -> None:
-    F = trade_off.F[:, columns]
+    F = _on_axes(trade_off, trade_off.F)[:, columns]
     whole = len(columns) == trade_off.F.shape[1]
     lines = [F[[k]] for k in range(len(F))]
     if other is not None:
@@ -130,7 +132,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
     rest = [k for k in range(trade_off.F.shape[1]) if k not in columns]
     if len(rest) == 1:
         other_one = trade_off.problem.objectives[rest[0]]
-        values = trade_off.F[:, rest[0]] * (-1.0 if other_one.maximise else 1.0)
+        values = _on_axes(trade_off, trade_off.F)[:, rest[0]] * (-1.0 if other_one.maximise else 1.0)
         low, high = style.span(values)
         look = {"c": values, "cmap": "cividis", "vmin": low, "vmax": high}
         dots = ax.scatter(*F.T, s=18, **look, zorder=3, label="trade-off paths")
@@ -158,7 +160,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
 
 
 def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> None:
-    F = trade_off.F[:, columns]
+    F = _on_axes(trade_off, trade_off.F)[:, columns]
     if other is not None:
         ax.scatter(
             *other[:, columns].T, s=10, facecolors="none", edgecolors=style.REFERENCE, linewidths=0.5, label=reference_label
@@ -191,6 +193,13 @@ def _draw_solid(ax, trade_off, columns, groups, other, reference_label: str) -> 
 
 
 def _label_axes(axes, trade_off, columns: Sequence[int]) -> None:
+    problem = trade_off.problem
     for axis, column in zip(axes, columns, strict=True):
-        objective = trade_off.problem.objectives[column]
-        axis.set_label_text(style.label_axis(axis, objective.label, objective.maximise))
+        objective = problem.objectives[column]
+        axis.set_label_text(style.label_axis(axis, axis_of(objective, problem.grid)[0], objective.maximise))
+
+
+def _on_axes(trade_off, F: np.ndarray) -> np.ndarray:
+    """Return points in the units that the axes say."""
+    problem = trade_off.problem
+    return F * [axis_of(objective, problem.grid)[1] for objective in problem.objectives]

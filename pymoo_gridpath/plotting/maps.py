@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +19,7 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import check_field, obstacle_potential
 from pymoo_gridpath.grid import Box, OccupancyGrid, check_grid
 from pymoo_gridpath.plotting import style
-
-Units = Literal["cells", "m"]
+from pymoo_gridpath.plotting.style import Units
 
 #: Larger maps are drawn without lines between cells.
 MAX_RULED = 32
@@ -34,11 +33,13 @@ def plot_map(
     potential: bool | np.ndarray = True,
     start: Sequence[int] | None = None,
     goal: Sequence[int] | None = None,
-    units: Units = "cells",
+    units: Units | None = None,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
     """Draw a grid: occupied cells dark, over the obstacles' potential in a light colour.
+
+    Of cells that are occupied because obstacles grew, see `OccupancyGrid.inflate`, the colour is another one.
 
     Parameters
     ----------
@@ -47,8 +48,9 @@ def plot_map(
         The field under the cells; True computes `obstacle_potential`, False draws none.
     start, goal : (int, int), optional
         Cells (x, y), marked by a circle and a star.
-    units : {"cells", "m"}, default "cells"
-        What the axes measure. Metres are those of the map's frame, with its origin and yaw: a turned map is drawn turned.
+    units : {"cells", "m"}, optional
+        What the axes measure, by default metres where the map has them. Metres are those of the map's frame, with its origin
+        and yaw: a turned map is drawn turned.
     legend : bool, default True
         Whether to name the marks in a legend beside the map.
     ax : matplotlib.axes.Axes, optional
@@ -65,7 +67,7 @@ def plot_map(
         off the grid.
     """
     check_grid(grid)
-    style.check_units(units, grid)
+    units = style.check_units(units, grid)
     style.check_axes(ax)
     legend = checks.flag("legend", legend)
     field = _field(grid, potential)
@@ -90,11 +92,11 @@ def plot_paths(
     which: Sequence[str] | None = None,
     all_paths: bool = True,
     potential: bool | np.ndarray = True,
-    units: Units = "cells",
+    units: Units | None = None,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the chosen paths of a trade-off set on their map.
+    """Draw the chosen paths of a trade-off set on their map, where obstacles that grew are told from what they were.
 
     Of a large map of which little can be reached from the start, that part is drawn, see `OccupancyGrid.box_of`. Of paths in
     time the ways of the obstacles that move are drawn until the last path arrives, with a square where each is at tick 0; who
@@ -128,7 +130,7 @@ def plot_paths(
     Ahmed and Deb (2013), figures 5 to 7.
     """
     groups = style.by_path(check_set(trade_off), which)
-    style.check_units(units, trade_off.problem.grid)
+    units = style.check_units(units, trade_off.problem.grid)
     style.check_axes(ax)
     all_paths, legend = checks.flag("all_paths", all_paths), checks.flag("legend", legend)
     problem = trade_off.problem
@@ -177,6 +179,10 @@ def _draw_cells(ax: Axes, grid: OccupancyGrid, field: np.ndarray | None, units: 
     share = np.zeros(grid.shape) if field is None or top <= 0 else np.clip(field / top, 0.0, 1.0)
     image = colors(share)[..., :3]
     image[grid.occupied] = to_rgb(style.OCCUPIED)
+    near = grid.grown_cells
+    if near is not None and near.any():
+        image[near] = to_rgb(style.GROWN)
+        ax.scatter([], [], marker="s", color=style.GROWN, label="too near for the robot")
     frame = _cells_to_axes(grid, units, box or grid.whole)
     # Between the image's cell coordinates and the Axes', so that a turned map needs no resampling here.
     width, height = grid.width, grid.height
@@ -302,7 +308,9 @@ def _draw_legend(ax: Axes, grid: OccupancyGrid) -> None:
     if not handles:
         return
     # Chosen paths first, then the ends, then the rest.
-    order = sorted(range(len(labels)), key=lambda k: 2 if labels[k].startswith("other") else labels[k] in ("start", "goal"))
+    order = sorted(
+        range(len(labels)), key=lambda k: 2 if labels[k].startswith(("other", "too")) else labels[k] in ("start", "goal")
+    )
     handles, labels = [handles[k] for k in order], [labels[k] for k in order]
     if _is_wide(grid):
         columns = len(handles) if len(handles) <= 4 else (len(handles) + 1) // 2

@@ -19,8 +19,8 @@ from pymoo_gridpath.files import write_whole
 from pymoo_gridpath.plotting import style
 from pymoo_gridpath.plotting.convergence import as_recorders, plot_convergence
 from pymoo_gridpath.plotting.fronts import as_reference, plot_front
-from pymoo_gridpath.plotting.maps import Units, figure_size, plot_paths
-from pymoo_gridpath.plotting.style import STYLE
+from pymoo_gridpath.plotting.maps import figure_size, plot_paths
+from pymoo_gridpath.plotting.style import STYLE, Units
 
 # What each format writes about the time of writing, which would make equal figures differ.
 _METADATA: dict[str, dict] = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
@@ -38,7 +38,7 @@ def save_figures(
     history=None,
     reference=None,
     formats: Sequence[str] = ("png", "pdf"),
-    units: Units = "cells",
+    units: Units | None = None,
     dpi: float = 200,
 ) -> list[Path]:
     """Write the figures of a trade-off set: ``map``, ``front`` and ``convergence``.
@@ -55,8 +55,8 @@ def save_figures(
     reference : optional
         What `plot_front` takes.
     formats : sequence of {"png", "pdf", "svg"}, default ("png", "pdf")
-    units : {"cells", "m"}, default "cells"
-        What the axes of the map measure.
+    units : {"cells", "m"}, optional
+        What the axes of the map measure, by default metres where the map has them.
     dpi : float, default 200
         Dots per inch of pictures.
 
@@ -71,7 +71,7 @@ def save_figures(
     GridPathError
         If an argument is of another kind or out of its range, a format is unknown, or a file cannot be written.
     """
-    style.check_units(units, check_set(trade_off).problem.grid)
+    units = style.check_units(units, check_set(trade_off).problem.grid)
     dpi = checks.number("dpi", dpi, 1.0, _MOST_DPI, expected=f"dots per inch, 1 to {_MOST_DPI}")
     formats = checks.names("formats", formats)
     for name in formats:

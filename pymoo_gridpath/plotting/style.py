@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import weakref
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import matplotlib as mpl
 import numpy as np
@@ -17,9 +17,12 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.decision.trade_off import names_for
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.pictures import GROWN as GROWN
 from pymoo_gridpath.pictures import INK, PALETTE
 from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
 from pymoo_gridpath.pictures import OTHERS as OTHERS
+
+Units = Literal["cells", "m"]
 
 
 @dataclass(frozen=True)
@@ -172,12 +175,15 @@ def label_axis(axis, label: str, maximise: bool) -> str:
     return f"{label}, more is better"
 
 
-def check_units(units: str, grid: OccupancyGrid) -> None:
-    """Refuse units of a map that are none, and metres of a map that has none."""
+def check_units(units: Units | None, grid: OccupancyGrid) -> Units:
+    """Return the units of a map, by default metres where it has them; refuse others, and metres of a map that has none."""
+    if units is None:
+        return "cells" if grid.resolution is None else "m"
     if not (isinstance(units, str) and units in ("cells", "m")):
         raise GridPathError(f"units is {checks.shown(units)}, expected 'cells' or 'm'")
     if units == "m":
         grid.check_resolution("an axis in metres")
+    return units
 
 
 def check_axes(ax: Axes | None) -> None:

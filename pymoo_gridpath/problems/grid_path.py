@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from pymoo.core.problem import Problem
 
 from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import CapabilityError, GridPathError, GridPathWarning, counted, visible
+from pymoo_gridpath.errors import CapabilityError, GridError, GridPathError, GridPathWarning, counted, visible
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.fields import BoxedField
 from pymoo_gridpath.grid import Box, Cell, OccupancyGrid, check_grid
+from pymoo_gridpath.maps.queries import query_in_metres
 from pymoo_gridpath.objectives import (
     Objective,
     avoiding_costs,
@@ -151,7 +152,7 @@ class GridPathProblem(Problem):
         axis: Axis = "auto",
     ):
         self.grid = check_grid(grid)
-        self.start, self.goal = grid.check_query(start, goal)
+        self.start, self.goal = self._check_ends(start, goal)
         self.objectives = tuple(objective.on(grid) for objective in make_objectives(objectives))
         checks.one_of("obstacles", obstacles, OBSTACLES)
         if obstacles == "constraint" and penalty is not None:
@@ -199,6 +200,48 @@ class GridPathProblem(Problem):
             requires_kwargs=True,
         )
 
+    @classmethod
+    def from_metres(
+        cls, grid: OccupancyGrid, start: Sequence[float], goal: Sequence[float], goal_tolerance: float = 0.0, **options
+    ) -> Self:
+        """Return the problem of paths between two points in metres.
+
+        Parameters
+        ----------
+        grid : OccupancyGrid
+        start, goal : (float, float)
+            Points (x, y) in the frame of the map, with its origin and yaw; the cells that hold them are planned between.
+        goal_tolerance : float, default 0.0
+            Where no path leads to the goal, the nearest cell that can be reached is the goal instead, if its centre is at most
+            so many metres from the point.
+        **options
+            What else the constructor takes.
+
+        Raises
+        ------
+        GridPathError
+            If a point lies outside the map, on an obstacle, or nearer to one than the robot can be, no path leads to the goal,
+            or both lie in the same cell, all in metres; and as the constructor.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> grid = OccupancyGrid(np.zeros((8, 8)), resolution=0.5, origin=(-2.0, -2.0, 0.0))
+        >>> problem = GridPathProblem.from_metres(grid, (-1.8, -1.8), (1.2, 0.3), objectives=["length"])
+        >>> problem.start, problem.goal
+        ((0, 0), (6, 4))
+        """
+        ends = query_in_metres(check_grid(grid), start, goal, goal_tolerance)
+        if ends[0] == ends[1]:
+            raise GridError(
+                f"start {shown(tuple(start))} m and goal {shown(tuple(goal))} m lie in the same cell, expected two different "
+                f"ones"
+            )
+        return cls(grid, start=ends[0], goal=ends[1], **options)
+
+    def _check_ends(self, start: Sequence[int], goal: Sequence[int]) -> tuple[Cell, Cell]:
+        return self.grid.check_query(start, goal)
+
     def _check_limit(self, potential_limit: float | None) -> float | None:
         if self.obstacles != "limit":
             if potential_limit is not None:
@@ -232,7 +275,8 @@ class GridPathProblem(Problem):
     # -- in a notebook ------------------------------------------------------------------------------------------------
 
     def _repr_png_(self) -> bytes:
-        scene = pictures.Scene(self.grid.occupied, self.grid.unknown, start=self.start, goal=self.goal)
+        grid = self.grid
+        scene = pictures.Scene(grid.occupied, grid.unknown, start=self.start, goal=self.goal, grown=grid.grown_cells)
         return pictures.png(scene.cropped(*self.representation.box))
 
     def _repr_html_(self) -> str:

@@ -18,6 +18,7 @@ from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.problems.grid_path import GridPathProblem
 from pymoo_gridpath.representations import CellSequence
+from pymoo_gridpath.search.timetable import occupied_at
 
 # More maps than any run has time for.
 _MOST_EPOCHS = 10_000
@@ -266,11 +267,10 @@ def _way(number: int, way: Any) -> np.ndarray:
 
 def _with(grid: OccupancyGrid, cells: np.ndarray) -> OccupancyGrid:
     """Return a grid with further occupied cells, of which those beyond its edge are none."""
-    x, y = cells.reshape(-1, 2).T
-    inside = (x >= 0) & (x < grid.width) & (y >= 0) & (y < grid.height)
-    occupied = grid.occupied.copy()
-    occupied[y[inside], x[inside]] = True
-    return grid.replace(occupied=occupied)
+    made = grid.replace(occupied=occupied_at(grid, cells.reshape(-1, 2)))
+    if grid.original is grid:
+        return made
+    return made.grown_from(_with(grid.original, cells), grid.robot_radius, grid.footprint)
 
 
 def _leaves_a_way(grid: OccupancyGrid, places: list[tuple[int, int]], start, goal) -> bool:

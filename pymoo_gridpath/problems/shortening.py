@@ -13,7 +13,8 @@ from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.sight import Waypoints, along, visible
+from pymoo_gridpath.search.sight import along, visible
+from pymoo_gridpath.search.waypoints import Waypoints
 
 
 class ShorteningProblem(Problem):
@@ -148,7 +149,7 @@ class ShorteningProblem(Problem):
 
     def waypoints(self, x: np.ndarray) -> Waypoints:
         """Return the corners of the path of one row of genes, shape (n_points,); each sees the next."""
-        return Waypoints.of(self.grid, self.moves.cells(self._corners(x)))
+        return Waypoints(self.grid, self.moves.cells(self._corners(x)))
 
     def cells(self, x: np.ndarray) -> np.ndarray:
         """Return the cells (x, y) of that path, shape (n, 2): a legal step leads from each to the next."""

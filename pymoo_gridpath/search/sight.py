@@ -1,4 +1,4 @@
-"""Line of sight: which cells see one another, and the waypoints of paths that follow such lines.
+"""Line of sight: which cells see one another, and paths that follow such lines.
 
 A cell sees another where two tests hold. The straight line between their centres crosses no occupied cell, and passes no
 corner that may not be cut; and its digital line, the cells that stand for it on the grid, is a chain of legal steps. The second
@@ -8,15 +8,16 @@ misses. With both, a polyline of such lines can be driven as it is, and as a pat
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
-from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.moves import Moves
+from pymoo_gridpath.search.nearest import Nearest, distance
 from pymoo_gridpath.search.sequences import cut_loops
 
 # A gain below this, in cells, is rounding of numbers.
@@ -25,61 +26,56 @@ _ROUNDING = 1e-9
 # A pass that shortens a path by less, in cells, is no reason for another: centres of cells stand for points half a cell around.
 _LEAST_GAIN = 0.1
 
+# What a line has to spare must be more, in cells, so that few points of it tell.
+_LEAST_SPARE = 1.0 / 64.0
 
-class Waypoints(NamedTuple):
-    """The corners of a polyline whose every piece is a line of sight, from the start to the goal.
+# So much nearer than the robot is wide a line may come, in cells, where the path just passes: else stairs would be left there.
+_GRAZE = 1.0 / 32.0
+
+
+class Promise(NamedTuple):
+    """How clear of obstacles a line must be that replaces a stretch of a path.
+
+    Each point of the line, at some share of its length, shall be at most ``tolerance`` nearer to an obstacle than the path is
+    at the same share of the stretch, and no nearer than the robot is wide, by more than a 32nd of a cell, unless the path is. A
+    stretch that is straight already is kept as it is.
 
     Attributes
     ----------
-    cells : numpy.ndarray of int, shape (n, 2)
-        Cells (x, y).
-    metres : numpy.ndarray of float, shape (n, 2), or None
-        Their centres in the frame of the map; None on a map in cells.
+    above, below : numpy.ndarray of int32
+        Of a `Nearest` of the obstacles.
+    x, y : numpy.ndarray of float, shape (n,)
+        The path's cells, counted as in those arrays.
+    along : numpy.ndarray of float, shape (n,)
+        The length of the path up to each.
+    tolerance, robot : float
+        The tolerance, and the radius of the robot from whose centre distances are, in cells.
     """
 
-    cells: np.ndarray
-    metres: np.ndarray | None
+    above: np.ndarray
+    below: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    along: np.ndarray
+    tolerance: float
+    robot: float
 
     @classmethod
-    def of(cls, grid: OccupancyGrid, cells: np.ndarray) -> Waypoints:
-        """Return the waypoints at cells (x, y) of a grid, shape (n, 2)."""
-        return cls(cells, None if grid.resolution is None else grid.to_metres(cells))
-
-    @property
-    def length(self) -> float:
-        """Euclidean length in cells."""
-        return _length(self.cells)
-
-    @property
-    def length_m(self) -> float | None:
-        """Euclidean length in metres; None on a map in cells."""
-        return None if self.metres is None else _length(self.metres)
-
-    @property
-    def curvature(self) -> tuple[float, float]:
-        """Greatest and mean curvature, 1 / m, or one by the side of a cell on a map in cells.
-
-        A polyline has none of its own: it is 0 along a piece and infinite at a corner. So the line is cut into pieces of one
-        cell, as near as their number allows, and the curvature is Menger's, that of the circle through three of their ends.
-        """
-        line = self.cells if self.metres is None else self.metres
-        along_it = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
-        at = np.linspace(0.0, along_it[-1], max(round(self.length), 2) + 1)
-        points = np.stack([np.interp(at, along_it, line[:, axis]) for axis in (0, 1)], axis=1)
-        before, after, both = points[1:-1] - points[:-2], points[2:] - points[1:-1], points[2:] - points[:-2]
-        product = np.hypot(*before.T) * np.hypot(*after.T) * np.hypot(*both.T)
-        twice = 2.0 * np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
-        curvature = np.divide(twice, product, out=np.zeros(len(product)), where=product > 0)
-        return float(curvature.max()), float(curvature.mean())
+    def of(cls, nearest: Nearest, cells: np.ndarray, tolerance: float, robot: float) -> Promise:
+        """Return the promise for a path of cells (x, y), shape (n, 2)."""
+        x, y = np.ascontiguousarray((cells - nearest.corner).T, dtype=float)
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+        return cls(nearest.above, nearest.below, x, y, along, float(tolerance), float(robot))
 
 
-def _length(points: np.ndarray) -> float:
-    return float(np.hypot(*np.diff(points, axis=0).T).sum())
+# Planners ask of a line no more than that it is one of sight.
+_NO_CELLS, _NO_ROWS = np.empty(0), np.empty((0, 0), dtype=np.int32)
+_NO_PROMISE = Promise(_NO_ROWS, _NO_ROWS, _NO_CELLS, _NO_CELLS, _NO_CELLS, np.inf, 0.0)
 
 
 def path_length(moves: Moves, path: np.ndarray) -> float:
     """Return the Euclidean length, in cells, of the line from each cell to the next, given by their indices."""
-    return _length(moves.cells(path))
+    return float(np.hypot(*np.diff(moves.cells(path), axis=0).T).sum())
 
 
 def visible(moves: Moves, cells: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -106,6 +102,31 @@ def digital_line(moves: Moves, cell: int, other: int) -> np.ndarray:
     return line[:n].copy()
 
 
+def farthest_seen(moves: Moves, path: np.ndarray, backward: bool = False, promise: Promise = _NO_PROMISE) -> np.ndarray:
+    """Return which cells of a path are left when each sees the next: the first, the last that it sees, and so on.
+
+    Parameters
+    ----------
+    moves : Moves
+    path : numpy.ndarray of int64, shape (n,)
+        Indices of cells, each of which a legal step leads to from the one before.
+    backward : bool
+        Whether the path leads from its end to its start: then each must be seen by the next.
+    promise : Promise, optional
+        What lines must keep besides.
+
+    Returns
+    -------
+    numpy.ndarray of int64, shape (m,)
+    """
+    return path[places_of_farthest(moves, path, backward, promise)]
+
+
+def places_of_farthest(moves: Moves, path: np.ndarray, backward: bool, promise: Promise) -> np.ndarray:
+    """Return where in the path those cells stand, see `farthest_seen`."""
+    return _farthest(moves.legal, moves.offsets, moves.width, path, backward, promise)
+
+
 def smoothed(moves: Moves, path: np.ndarray, backward: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Return the waypoints of a path when each jumps to the last cell in sight, and the cells of the lines between them.
 
@@ -124,7 +145,7 @@ def smoothed(moves: Moves, path: np.ndarray, backward: bool = False) -> tuple[np
     """
     while True:
         way = path[::-1].copy() if backward else path
-        waypoints = farthest_seen(moves.legal, moves.offsets, moves.width, way, backward)
+        waypoints = farthest_seen(moves, way, backward)
         waypoints = waypoints[::-1].copy() if backward else waypoints
         cells = along(moves.width, waypoints)
         path = cut_loops(Sequences(cells, np.array([0, len(cells)])), moves.n_cells).cells
@@ -242,36 +263,66 @@ def append_line(width, cell, other, path, n):
 
 
 @kernel
-def farthest_seen(legal, offsets, width, path, backward=False):
-    """Return which cells of a path are left when each sees the next: the first, the last that it sees, and so on.
-
-    Parameters
-    ----------
-    path : int64, shape (n,)
-        Indices of cells, each of which a legal step leads to from the one before.
-    backward : bool
-        Whether the path leads from its end to its start: then each must be seen by the next.
-
-    Returns
-    -------
-    int64, shape (m,)
-        Their indices in the grid. What a cell sees along a path comes and goes, so that the search is from the end.
-    """
-    kept = np.empty(len(path), dtype=np.int64)
-    kept[0] = path[0]
+def _farthest(legal, offsets, width, path, backward, promise):
+    """Return the places of `farthest_seen`. What a cell sees comes and goes, so that the search is from the end."""
+    kept = np.zeros(len(path), dtype=np.int64)
     n, i = 1, 0
     while i < len(path) - 1:
         j = len(path) - 1
         while j > i + 1:
-            if backward and sees(legal, offsets, width, path[j], path[i]):
-                break
-            if not backward and sees(legal, offsets, width, path[i], path[j]):
+            cell, other = (path[j], path[i]) if backward else (path[i], path[j])
+            if sees(legal, offsets, width, cell, other) and keeps_clear(promise, i, j):
                 break
             j -= 1
         i = j
-        kept[n] = path[i]
+        kept[n] = i
         n += 1
     return kept[:n].copy()
+
+
+@kernel
+def keeps_clear(promise, i, j):
+    """Return whether the line that replaces the stretch from one place of a path to another keeps a promise.
+
+    Both the line and the path come nearer to obstacles by no more than they move on, so that from what is to spare at one share
+    follows how far on nothing has to be looked at.
+    """
+    if promise.tolerance == np.inf or promise.above.size == 0:
+        return True
+    dx, dy = promise.x[j] - promise.x[i], promise.y[j] - promise.y[i]
+    moved = promise.along[j] - promise.along[i]
+    line = math.sqrt(dx * dx + dy * dy)
+    if moved - line < _ROUNDING:
+        return True
+    # Lines that do not are told soonest at points far apart.
+    for k in (4, 2, 6, 1, 3, 5, 7):
+        if _to_spare(promise, i, j, k / 8) < _LEAST_SPARE:
+            return False
+    share = 0.0
+    while share < 1.0:
+        spare = _to_spare(promise, i, j, share)
+        if spare < _LEAST_SPARE:
+            return False
+        share += spare / (moved + line)
+    return True
+
+
+@kernel
+def _to_spare(promise, i, j, share):
+    """Return by how much the line is clearer than promised at a share of its length."""
+    x, y, along = promise.x, promise.y, promise.along
+    at = along[i] + share * (along[j] - along[i])
+    low, high = i, j
+    while high - low > 1:
+        middle = (low + high) // 2
+        if along[middle] <= at:
+            low = middle
+        else:
+            high = middle
+    part = (at - along[low]) / (along[high] - along[low])
+    before = distance(promise.above, promise.below, x[low] + part * (x[high] - x[low]), y[low] + part * (y[high] - y[low]))
+    after = distance(promise.above, promise.below, x[i] + share * (x[j] - x[i]), y[i] + share * (y[j] - y[i]))
+    return after - max(before - promise.tolerance, min(before, promise.robot) - _GRAZE)
 
 
 @kernel

@@ -55,8 +55,8 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
     assert done.returncode == 0, done.stderr
     assert without_compiling(done.stderr) == "", "progress must be silent in a pipe"
     assert "shortest" in done.stdout and "vulnerability" in done.stdout
-    names = {"paths.csv", "paths.json", "map.png", "map.pdf", "front.png", "front.pdf", "convergence.png", "convergence.pdf"}
-    assert {file.name for file in out.iterdir()} == names
+    figures = {f"{name}.{kind}" for name in ("map", "front", "convergence") for kind in ("png", "pdf")}
+    assert {file.name for file in out.iterdir()} == {"paths.csv", "paths.json", "population.npz", *figures}
     document = json.loads((out / "paths.json").read_text())
     with open(out / "paths.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -109,7 +109,7 @@ def test_figures_of_an_earlier_set_do_not_stay(tmp_path, free_map):
     assert run(*query, "--objectives", "length,vulnerability,turn").returncode == 0
     assert (tmp_path / "out" / "front_plane.png").exists()
     assert run(*query, "--objectives", "length").returncode == 0
-    assert {file.stem for file in (tmp_path / "out").iterdir()} == {"paths", "map", "convergence"}
+    assert {file.stem for file in (tmp_path / "out").iterdir()} == {"paths", "population", "map", "convergence"}
 
 
 def test_plan_finds_paths_that_turn_back(tmp_path):

@@ -157,10 +157,17 @@ def test_the_table_ends_with_the_shortest_of_all_paths():
         found = TradeOffSet.from_genes(problem, [[0, 1, 1, 1, 0, 0, 0]])
         lines[objectives[0]] = found.table().splitlines()
     # Three diagonal steps and four straight ones.
-    said = f"for comparison, the shortest of all paths on this grid has length {4 + 3 * 2**0.5:.3f} ({2 + 1.5 * 2**0.5:.3f} m)"
+    said = f"for comparison, the shortest of all paths on this grid has length {2 + 1.5 * 2**0.5:.3f} m"
     assert lines["length"][3] == said
     in_cells = GridPathProblem(grid.replace(resolution=None), (0, 0), (7, 3), "integer")
-    assert TradeOffSet.from_genes(in_cells, [[0, 1, 1, 1, 0, 0, 0]]).table().splitlines()[3] == said.partition(" (")[0]
+    in_cells = TradeOffSet.from_genes(in_cells, [[0, 1, 1, 1, 0, 0, 0]]).table().splitlines()
+    assert in_cells[3] == f"for comparison, the shortest of all paths on this grid has length {4 + 3 * 2**0.5:.3f}"
+    # Of what there is in cells and in metres, the table of a map in metres has the metres.
+    heads = [lines["length"][1].split("  "), in_cells[1].split("  ")]
+    assert [{"length", "length [m]", "clearance", "clearance [m]"} & {word.strip() for word in head} for head in heads] == [
+        {"length [m]", "clearance [m]"},
+        {"length", "clearance"},
+    ]
     assert not any("for comparison" in line for line in lines["vulnerability"])
 
 

@@ -43,7 +43,14 @@ def moving():
     return TradeOffSet.from_genes(problem, problem.pareto_set(max_seconds=60))
 
 
+def grown():
+    grid = exact_set().problem.grid.inflate(footprint=[(0.04, 0.0), (-0.03, 0.02), (0, -0.02)])
+    grown = GridPathProblem(grid, (0, 3), (10, 5))
+    return TradeOffSet.from_genes(grown, grown.pareto_set(max_seconds=60))
+
+
 SETS = {
+    "grown": grown,
     "cells": exact_set,
     "integer": lambda: exact_set("integer"),
     "binary": lambda: exact_set("binary", axis="x"),
@@ -75,7 +82,9 @@ def test_what_was_written_comes_back(stored, tmp_path):
     assert again.to_json(tmp_path / "again.json").read_bytes() == file.read_bytes()
     assert again.to_csv(tmp_path / "a.csv").read_bytes() == found.to_csv(tmp_path / "b.csv").read_bytes()
     assert again.table() == found.table() and again.named == found.named and again.feasible == found.feasible
-    assert again.problem.grid == found.problem.grid and again.problem.grid.origin == found.problem.grid.origin
+    mine, other = again.problem.grid, found.problem.grid
+    assert mine == other and mine.origin == other.origin and mine.original == other.original
+    assert (mine.robot_radius, mine.footprint) == (other.robot_radius, other.footprint)
     np.testing.assert_array_equal(again.X, found.X)
     np.testing.assert_array_equal(again.F, found.F)
     assert [again.measures[name].dtype for name in again.measures] == [found.measures[name].dtype for name in found.measures]
@@ -124,8 +133,8 @@ def test_runs_alternate_from_free_cells_on(occupied):
         ("[" * 10**5, "nested too deep"),
         ("[]", "no trade-off set"),
         ('{"format": "pymoo_gridpath trade-off set", "format_version": 99}', "format_version"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 2, "paths": []}', "paths"),
-        ('{"format": "pymoo_gridpath trade-off set", "format_version": 2, "paths": [{"cells": []}]}', "path 0 has no 'names'"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 3, "paths": []}', "paths"),
+        ('{"format": "pymoo_gridpath trade-off set", "format_version": 3, "paths": [{"cells": []}]}', "path 0 has no 'names'"),
     ],
 )
 def test_a_file_that_is_no_set_is_refused(text, word, tmp_path):

@@ -64,7 +64,7 @@ def test_other_sets_have_no_earliest():
 
 
 def test_they_are_drawn_with_who_moves(trade_off):
-    ax = plot_paths(trade_off)
+    ax = plot_paths(trade_off, units="cells")
     labels = [line.get_label() for line in ax.lines]
     assert "earliest" in labels[0] and "obstacles that move" in labels
     there = next(line for line in ax.lines if line.get_label() == "obstacles that move")
@@ -72,7 +72,7 @@ def test_they_are_drawn_with_who_moves(trade_off):
     np.testing.assert_array_equal(np.array(there.get_xydata()), [place(WAYS[1], tick) for tick in range(ticks)])
     beyond = ax.lines[ax.lines.index(there) + 1]
     assert np.isnan(np.array(beyond.get_xydata())).all()
-    metres = next(line for line in plot_paths(trade_off, units="m").lines if line.get_label() == "obstacles that move")
+    metres = next(line for line in plot_paths(trade_off).lines if line.get_label() == "obstacles that move")
     np.testing.assert_allclose(np.array(metres.get_xydata()), 0.5 * np.array(there.get_xydata()) + 0.25)
     assert plot_front(trade_off).name == "3d"
     plt.close("all")

@@ -5,15 +5,17 @@ import csv
 import html
 import importlib.util
 import io
+import itertools
 import json
 import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from page_sets import HOSTILE, exact_set
+from page_sets import HOSTILE, exact_set, grown_set
 from PIL import Image
 
+from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet
 from pymoo_gridpath.explorer import explore, save_page
 from pymoo_gridpath.explorer.data import packed_paths
 
@@ -133,6 +135,27 @@ def test_the_map_stands_upright(open_page):
     np.testing.assert_array_equal(np.array(dots).reshape(12, 16) == dark, found.problem.grid.occupied)
 
 
+def test_obstacles_are_told_from_what_is_too_near_to_them(open_page):
+    found = grown_set()
+    page = open_page(found)
+    grid = found.problem.grid
+    labels = page.run("Array.from(document.querySelectorAll('#layers label'), (label) => label.textContent)")
+    assert labels[:2] == ["Obstacles", "Too near for a radius of 0.3 m"]
+
+    def cells_of(name):
+        read = "Array.from(map.cells.getContext('2d').getImageData(0, 0, 16, 12).data.filter((_, k) => k % 4 < 3))"
+        dots = np.array(page.run(f"map.paintCells(), {read}")).reshape(12, 16, 3)[::-1]
+        return (dots == page.run(f"parts(color('{name}'))")).all(axis=2)
+
+    np.testing.assert_array_equal(cells_of("occupied"), grid.original.occupied)
+    np.testing.assert_array_equal(cells_of("grown"), grid.occupied & ~grid.original.occupied)
+    page.run("document.querySelectorAll('#layers input')[1].click(); 0")
+    assert not cells_of("grown").any()
+    np.testing.assert_array_equal(cells_of("occupied"), grid.original.occupied)
+    page.run("document.querySelectorAll('#layers input')[1].click(); document.querySelector('#layers input').click(); 0")
+    assert not cells_of("occupied").any() and cells_of("grown").any()
+
+
 def test_everything_is_done_by_keys_alone(open_page):
     found = exact_set()
     page = open_page(found)
@@ -248,16 +271,28 @@ def test_the_waypoints_of_a_path_are_saved(open_page):
     page = open_page(found, "#1")
     page.run("document.getElementById('download').click(); 0")
     rows = list(csv.DictReader(io.StringIO(page.downloaded("room-path-1.csv").decode())))
-    assert [[int(row["cell_x"]), int(row["cell_y"])] for row in rows] == found[1].cells.tolist()
-    points = [[float(row["x_m"]), float(row["y_m"])] for row in rows]
-    np.testing.assert_allclose(points, found[1].points, rtol=1e-14, atol=1e-14)
+    assert list(rows[0]) == ["x", "y", "yaw"]
+    for k in range(len(found)):
+        rows = list(csv.DictReader(io.StringIO(page.run(f"waypoints({k})"))))
+        made = found[k].waypoints()
+        poses = [[float(row[key]) for key in ("x", "y", "yaw")] for row in rows]
+        np.testing.assert_allclose(poses, np.column_stack([made.points, made.yaw]), rtol=1e-14, atol=1e-14)
 
 
 def test_a_map_in_cells_gives_cells(open_page):
     found = exact_set(resolution=None)
     page = open_page(found)
     lines = page.run("waypoints(0)").splitlines()
-    assert lines[0] == "cell_x,cell_y" and [[*map(int, line.split(","))] for line in lines[1:]] == found[0].cells.tolist()
+    corners = found[0].waypoints().cells.tolist()
+    assert lines[0] == "x,y,yaw" and [[*map(int, line.split(",")[:2])] for line in lines[1:]] == corners
+
+
+def test_nobody_is_to_drive_along_what_is_not_legal(open_page):
+    problem = GridPathProblem(OccupancyGrid([[0, 0, 0], [0, 1, 0], [0, 1, 0]]), (0, 2), (2, 2), "integer", axis="x")
+    rows = np.array(list(itertools.product(*map(range, problem.xl.astype(int), problem.xu.astype(int) + 1))))
+    found = TradeOffSet.from_genes(problem, rows[problem.decode(rows).interfering_cells > 0])
+    assert not found.feasible and not open_page(exact_set()).run("document.getElementById('download').hidden")
+    assert open_page(found).run("document.getElementById('download').hidden")
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from page_sets import HOSTILE, exact_set
+from page_sets import HOSTILE, exact_set, grown_set
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet
 from pymoo_gridpath.decision.drawn import drawn_field
@@ -81,10 +81,21 @@ def test_the_page_holds_every_path_and_its_measures(n_obj, tmp_path):
     assert next(steps, None) is None
     columns = {column["key"]: column for column in data["columns"]}
     assert [key for key, column in columns.items() if column["objective"]] == found.objective_names
-    for key, scale in (("length", 0.25), ("vulnerability", 1.0), ("turn", 1.0), ("clearance", 0.25)):
+    for key, scale in (("length", 0.25), ("vulnerability", 1.0), ("turn", 1.0), ("clearance_m", 1.0)):
         np.testing.assert_allclose(columns[key]["values"], found.measures[key] * scale, rtol=1e-6)
-    assert (columns["length"]["unit"], columns["clearance"]["unit"], columns["turn"]["unit"]) == ("m", "m", "\u00b0")
+    assert "clearance" not in columns and "length_m" not in columns
+    assert (columns["length"]["unit"], columns["clearance_m"]["unit"], columns["turn"]["unit"]) == ("m", "m", "\u00b0")
     assert {one["name"]: one["path"] for one in data["names"]} == found.named
+
+
+def test_the_page_holds_what_grew_apart(tmp_path):
+    found = grown_set()
+    data, grid = page_of(found, tmp_path).data, found.problem.grid
+    grown = np.unpackbits(array_of(data["grown"]), count=grid.occupied.size).reshape(grid.shape).astype(bool)
+    np.testing.assert_array_equal(grown, grid.occupied & ~grid.original.occupied)
+    clearance = next(column for column in data["columns"] if column["key"] == "clearance_m")
+    assert clearance["unit"] == "m" and clearance["values"] == pytest.approx([one.clearance_m for one in found])
+    assert page_of(exact_set(), tmp_path).data["grown"] is None
 
 
 def test_the_page_holds_the_map(tmp_path):

@@ -137,7 +137,7 @@ def test_region_of_sight_shortens_the_same_road_between_the_same_obstacles():
         assert lengths.tolist() == found.lengths[0].tolist()
         assert problem.travelled[-1] == pytest.approx(path_length(moves, problem.road))
         # Where lines do not cross, its first pass keeps to cells of the road, and so finds nothing better.
-        first = farthest_seen(moves.legal, moves.offsets, moves.width, problem.road)
+        first = farthest_seen(moves, problem.road)
         assert problem.pareto_front()[0, 0] <= path_length(moves, first) + 1e-9
         more = [ShorteningProblem(grid, found.initial[0], found.radius[0], n).pareto_front()[0, 0] for n in (1, 4, 12)]
         assert more == sorted(more, reverse=True) and more[-1] >= problem.pareto_front()[0, 0] - 1e-9

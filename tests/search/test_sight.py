@@ -15,7 +15,6 @@ from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sight import (
-    Waypoints,
     along,
     chain_is_legal,
     digital_line,
@@ -25,6 +24,7 @@ from pymoo_gridpath.search.sight import (
     smoothed,
     visible,
 )
+from pymoo_gridpath.search.waypoints import Waypoints
 from pymoo_gridpath.testing.enumeration import RULES
 from pymoo_gridpath.testing.reference import broken_cells, is_legal, walk
 
@@ -83,7 +83,7 @@ def test_shortened_paths_are_legal_see_on_and_are_no_longer(grid_and_rng):
         return
     moves = Moves(grid)
     path = np.array([moves.index(cell) for cell in cells])
-    kept = farthest_seen(moves.legal, moves.offsets, moves.width, path)
+    kept = farthest_seen(moves, path)
     assert visible(moves, kept[:-1], kept[1:]).all()
     again = [tuple(cell) for cell in moves.cells(along(moves.width, kept)).tolist()]
     assert is_legal(again, grid, start, goal) or len(set(again)) < len(again)
@@ -96,7 +96,7 @@ def test_shortened_paths_are_legal_see_on_and_are_no_longer(grid_and_rng):
     def octile(line):
         return sum(math.dist(a, b) for a, b in pairwise(line))
 
-    waypoints = Waypoints.of(grid, moves.cells(kept))
+    waypoints = Waypoints(grid, moves.cells(kept))
     assert waypoints.length <= octile(again) + 1e-9 <= octile(cells) + 2e-9
 
 
@@ -129,19 +129,19 @@ def test_curvature_is_that_of_a_circle_and_none_of_a_straight_line():
     angles = np.linspace(0, 2, 4000)
     grid = OccupancyGrid(np.zeros((5, 5)), resolution=0.1)
     circle = 40.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    assert Waypoints(circle, 0.1 * circle).curvature == pytest.approx((0.25, 0.25), rel=1e-3)
-    assert Waypoints.of(grid, np.array([[0, 0], [4, 2]])).curvature == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert Waypoints(grid, circle).curvature == pytest.approx((0.25, 0.25), rel=1e-3)
+    assert Waypoints(grid, np.array([[0, 0], [4, 2]])).curvature == pytest.approx((0.0, 0.0), abs=1e-9)
     # A right angle between two pieces of a cell: the circle through its ends has the diagonal for its diameter.
-    assert Waypoints.of(grid, np.array([[0, 0], [1, 0], [1, 1]])).curvature == pytest.approx((10 * math.sqrt(2),) * 2)
+    assert Waypoints(grid, np.array([[0, 0], [1, 0], [1, 1]])).curvature == pytest.approx((10 * math.sqrt(2),) * 2)
 
 
 def test_waypoints_are_in_cells_and_in_metres():
     grid = OccupancyGrid(np.zeros((5, 5)), resolution=0.5, origin=(10.0, -2.0, 0.0))
-    waypoints = Waypoints.of(grid, np.array([[0, 0], [3, 4], [4, 4]]))
+    waypoints = Waypoints(grid, np.array([[0, 0], [3, 4], [4, 4]]))
     assert waypoints.length == 6.0 and waypoints.length_m == 3.0
-    in_cells = Waypoints.of(OccupancyGrid(np.zeros((5, 5))), waypoints.cells)
-    assert in_cells.metres is None and in_cells.length_m is None and in_cells.length == 6.0
-    assert waypoints.metres.tolist() == [[10.25, -1.75], [11.75, 0.25], [12.25, 0.25]]
+    assert waypoints.points.tolist() == [[10.25, -1.75], [11.75, 0.25], [12.25, 0.25]]
+    in_cells = Waypoints(OccupancyGrid(np.zeros((5, 5))), waypoints.cells)
+    assert in_cells.length == 6.0 and in_cells.points.tolist() == waypoints.cells.tolist()
 
 
 def test_lines_keep_to_the_headings_of_the_steps():

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 import tifffile
 from PIL import Image
+from rosbags.rosbag1 import Writer
+from rosbags.typesys import Stores, get_typestore
 
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.maps import (
@@ -28,6 +30,8 @@ from pymoo_gridpath.maps.geotiff import GeoTiffFormat
 from pymoo_gridpath.maps.image import ImageFormat
 from pymoo_gridpath.maps.movingai import MovingAIFormat
 from pymoo_gridpath.maps.ros import RosFormat
+from pymoo_gridpath.maps.ros_message import RosMessageFormat
+from pymoo_gridpath.maps.rosbag import RosbagFormat
 from pymoo_gridpath.maps.text import TextFormat
 from pymoo_gridpath.registry import register
 from pymoo_gridpath.testing import MapFormatSuite
@@ -82,6 +86,37 @@ class TestRos(MapFormatSuite):
         )
 
 
+class TestRosMessage(MapFormatSuite):
+    format = RosMessageFormat
+
+    def write(self, path, grid):
+        cells = "".join(f"- {100 * int(cell)}\n" for cell in grid.occupied.ravel())
+        path.write_text(
+            f"header:\n  frame_id: map\ninfo:\n  resolution: 0.5\n  width: {grid.width}\n  height: {grid.height}\n  origin:\n"
+            "    position: {x: 0.0, y: 0.0, z: 0.0}\n    orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\n"
+            f"data:\n{cells}---\n"
+        )
+
+
+class TestRosbag(MapFormatSuite):
+    format = RosbagFormat
+
+    def write(self, path, grid):
+        path.unlink(missing_ok=True)
+        typestore = get_typestore(Stores.ROS1_NOETIC)
+        types = typestore.types
+        time = types["builtin_interfaces/msg/Time"](0, 0)
+        pose = types["geometry_msgs/msg/Pose"](
+            types["geometry_msgs/msg/Point"](0.0, 0.0, 0.0), types["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0)
+        )
+        info = types["nav_msgs/msg/MapMetaData"](time, 0.5, grid.width, grid.height, pose)
+        data = (100 * grid.occupied).astype(np.int8).ravel()
+        message = types["nav_msgs/msg/OccupancyGrid"](types["std_msgs/msg/Header"](0, time, "map"), info, data)
+        with Writer(path) as bag:
+            connection = bag.add_connection("/map", message.__msgtype__, typestore=typestore)
+            bag.write(connection, 0, typestore.serialize_ros1(message, message.__msgtype__))
+
+
 class TestText(MapFormatSuite):
     format = TextFormat
 
@@ -95,16 +130,8 @@ class TestText(MapFormatSuite):
 
 def test_all_formats_are_tested():
     tested = {suite.format for suite in MapFormatSuite.__subclasses__() if suite.__module__ == __name__}
-    assert tested == {
-        NumpyFormat,
-        GeoTiffFormat,
-        ImageFormat,
-        MovingAIFormat,
-        RosFormat,
-        TextFormat,
-        Runs,
-        MAP_FORMATS["rooms"],
-    }
+    ours = {NumpyFormat, GeoTiffFormat, ImageFormat, MovingAIFormat, RosFormat, RosMessageFormat, RosbagFormat, TextFormat}
+    assert tested == {*ours, Runs, MAP_FORMATS["rooms"]}
 
 
 # -- a format of someone else's ---------------------------------------------------------------------------------------

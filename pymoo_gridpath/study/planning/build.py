@@ -51,6 +51,47 @@ def pack_grid(grid: OccupancyGrid) -> tuple[dict[str, Any], bytes]:
     return spec, zlib.compress(np.packbits(grid.occupied).tobytes())
 
 
+def place_of_grid(grid: OccupancyGrid) -> tuple[dict[str, Any] | None, bytes | None]:
+    """Return what of a grid that came from a map changes no result, but what pages show of paths, and its original's cells.
+
+    Returns
+    -------
+    dict or None
+        ``origin`` if it is not 0; of a grid whose obstacles grew also ``robot_radius``, ``footprint``, and the digest of the
+        ``original``.
+    bytes or None
+        The cells of the original, packed as `pack_grid` does, if obstacles grew.
+    """
+    place: dict[str, Any] = {"origin": list(grid.origin)} if any(grid.origin) else {}
+    if grid.original is grid:
+        return place or None, None
+    corners = None if grid.footprint is None else [list(corner) for corner in grid.footprint]
+    place |= {"robot_radius": grid.robot_radius, "footprint": corners, "original": grid.original.digest}
+    return place, pack_grid(grid.original)[1]
+
+
+def placed(grid: OccupancyGrid, place: Mapping[str, Any], original: bytes | None) -> OccupancyGrid:
+    """Return a grid with what `place_of_grid` said of it; without the cells of the original it has grown from nothing.
+
+    Raises
+    ------
+    GridPathError
+        If the cells of the original are those of another grid.
+    """
+    grid = grid.replace(origin=place.get("origin", grid.origin))
+    if "original" not in place or original is None:
+        return grid
+    before = grid.replace(occupied=_unpacked(original, grid.shape))
+    if before.digest != place["original"]:
+        raise GridPathError("the cells of the map before it grew are not those that were planned with")
+    return grid.grown_from(before, place["robot_radius"], place["footprint"])
+
+
+def _unpacked(cells: bytes, shape: tuple[int, int]) -> np.ndarray:
+    packed = np.frombuffer(zlib.decompress(cells), dtype=np.uint8)
+    return np.unpackbits(packed, count=shape[0] * shape[1]).reshape(shape).astype(bool)
+
+
 def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> OccupancyGrid:
     """Return the grid that a canonical form describes.
 
@@ -71,10 +112,7 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
         return random_dense_grid(family["size"], family["p0"], family["seed"]).replace(**_resolution_of(spec), **steps_of(spec))
     if cells is None:
         raise GridPathError("the cells of the map are missing, expected those that were planned with")
-    packed = np.frombuffer(zlib.decompress(cells), dtype=np.uint8)
-    shape = spec["height"], spec["width"]
-    occupied = np.unpackbits(packed, count=shape[0] * shape[1]).reshape(shape).astype(bool)
-    grid = OccupancyGrid(occupied, **_resolution_of(spec), **steps_of(spec))
+    grid = OccupancyGrid(_unpacked(cells, (spec["height"], spec["width"])), **_resolution_of(spec), **steps_of(spec))
     if grid.digest != spec["digest"]:
         raise GridPathError("the cells of the map are not those that were planned with")
     return grid
@@ -85,7 +123,12 @@ def _resolution_of(spec: Mapping[str, Any]) -> dict[str, Any]:
     return {"resolution": spec.get("resolution")}
 
 
-def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> GridPathProblem:
+def build_problem(
+    problem: Mapping[str, Any],
+    grid: bytes | None = None,
+    place: Mapping[str, Any] | None = None,
+    original: bytes | None = None,
+) -> GridPathProblem:
     """Return the problem that a canonical form describes; the last few are kept, and must not be changed.
 
     One whose obstacles move has a time of its own, and begins with the first epoch.
@@ -96,16 +139,20 @@ def build_problem(problem: Mapping[str, Any], grid: bytes | None = None) -> Grid
         `Task.problem`.
     grid : bytes, optional
         `Task.grid`.
+    place, original : optional
+        Those of a `PlannedProblem`, which no run asks for.
 
     Raises
     ------
     GridPathError
         As `GridPathProblem`.
     """
-    key = json.dumps(problem, sort_keys=True)
+    key = json.dumps([problem, place, original is None], sort_keys=True)
     kept = _problems.get(key)
     if kept is None:
         cells = build_grid(problem["grid"], grid)
+        if place is not None:
+            cells = placed(cells, place, original)
         objectives = [one if isinstance(one, str) else own.make(one, OBJECTIVE) for one in problem["objectives"]]
         kept = (build_moving if "moving" in problem else _build_still)(problem, cells, objectives)
         _problems[key] = kept

@@ -67,6 +67,11 @@ class PlannedProblem:
         The key of the run whose front it is measured against; None if no exact front can be had or is wanted.
     source : str
         Where its map comes from, in words; empty for random grids. Part of no key: the cells of the map are.
+    place : dict or None
+        What of its map changes no result, but what pages show, see `pymoo_gridpath.study.planning.build.place_of_grid`; None
+        where there is nothing of that.
+    original : bytes or None
+        The packed cells of the map before its obstacles grew, if they did; None in a plan read from a file.
     """
 
     label: str
@@ -75,6 +80,8 @@ class PlannedProblem:
     grid: bytes | None = None
     reference: str | None = None
     source: str = ""
+    place: dict[str, Any] | None = None
+    original: bytes | None = None
 
 
 @dataclass(frozen=True)
@@ -159,7 +166,7 @@ class Plan:
         """Return the plan without the grids, of values that `json` writes."""
         plan = {**vars(self), "problems": [asdict(item) for item in self.problems]}
         for problem in plan["problems"]:
-            del problem["grid"]
+            del problem["grid"], problem["original"]
         plan["algorithms"] = [asdict(item) for item in self.algorithms]
         # Ten thousands of them, so that names are left out.
         plan["runs"] = [[run.key, run.problem, run.algorithm, run.seed] for run in self.runs]

@@ -16,7 +16,7 @@ from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.neighbourhood import neighbourhood_of
 from pymoo_gridpath.representations import default_representation
 from pymoo_gridpath.study.planning import canonical
-from pymoo_gridpath.study.planning.build import build_grid, build_problem, pack_grid
+from pymoo_gridpath.study.planning.build import build_grid, build_problem, pack_grid, place_of_grid
 from pymoo_gridpath.study.planning.moving import moving_entry
 from pymoo_gridpath.study.planning.plan import PlannedProblem, run_key
 from pymoo_gridpath.study.specification.kinds import objective_entry, representation_entry
@@ -33,6 +33,8 @@ class _Item(NamedTuple):
     cells: bytes | None
     start: Cell
     goal: Cell
+    place: dict[str, Any] | None = None
+    original: bytes | None = None
 
 
 def plan_problems(study: Study) -> tuple[list[PlannedProblem], list[int]]:
@@ -51,7 +53,17 @@ def plan_problems(study: Study) -> tuple[list[PlannedProblem], list[int]]:
             content = _settings(spec, item)
             if spec.moving is not None:
                 content |= _moving(study, k, spec, item, content)
-            problems.append(PlannedProblem(label, spec.label, content, item.cells, source=_source(spec, items)))
+            problems.append(
+                PlannedProblem(
+                    label,
+                    spec.label,
+                    content,
+                    item.cells,
+                    source=_source(spec, items),
+                    place=item.place,
+                    original=item.original,
+                )
+            )
             groups.append(k)
     _refuse_twins(study, problems, groups)
     return problems, groups
@@ -68,6 +80,8 @@ def _source(spec: ProblemSpec, items: list[_Item]) -> str:
     words += [f"{key} {value}" for key, value in given.items() if value is not None]
     if spec.radius:
         words.append(f"obstacles grown by {spec.radius:g} m")
+    if spec.footprint:
+        words.append(f"obstacles grown by a footprint of {len(spec.footprint)} corners")
     return ", ".join(words)
 
 
@@ -85,15 +99,16 @@ def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyG
             yield _Item(str(seed), grid, None, (0, 0), goal)
         return
     grid, queries = _map_queries(study, k, spec, maps)
-    grown = refuse(study, (*place_of(k), "radius"), "", grid.inflate, spec.radius)
-    content, cells = pack_grid(grown)
+    robot = (*place_of(k), "radius" if spec.footprint is None else "footprint")
+    grown = refuse(study, robot, "", grid.inflate, spec.radius, spec.footprint)
+    (content, cells), place = pack_grid(grown), place_of_grid(grown)
     for suffix, start, goal in queries:
         about = f"query {suffix}: " if spec.scen else ""
         where = (*place_of(k), "queries" if spec.scen else "start")
         refuse(study, where, about, grid.check_query, start, goal)
-        if spec.radius:
-            refuse(study, (*place_of(k), "radius"), about, check_grown, grown, spec.radius, start, goal)
-        yield _Item(suffix, content, cells, start, goal)
+        if grown is not grid:
+            refuse(study, robot, about, check_grown, grown, start, goal)
+        yield _Item(suffix, content, cells, start, goal, *place)
 
 
 def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[OccupancyGrid, list[tuple[str, Cell, Cell]]]:

@@ -9,6 +9,7 @@ from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.algorithms.arguments import check_pop_size
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.errors import StudyError, nearest
+from pymoo_gridpath.grid.arguments import as_footprint, as_pose
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.planners import Planner, reference_planner
 from pymoo_gridpath.registry import SLOTS, key_of
@@ -39,7 +40,7 @@ def check_plan(data: Any) -> None:
         for k, item in enumerate(_list(plan["algorithms"], ("algorithms",)))
     ]
     problems = [
-        _table(item, ("label", "group", "spec"), ("problems", k), "a problem", ("reference", "source"))
+        _table(item, ("label", "group", "spec"), ("problems", k), "a problem", ("reference", "source", "place"))
         for k, item in enumerate(_list(plan["problems"], ("problems",)))
     ]
     for k, problem in enumerate(problems):
@@ -97,6 +98,8 @@ def _check_problem(problem: Mapping[str, Any], where: Where) -> None:
     reference = problem.get("reference")
     if reference is not None and not _is_key(reference):
         raise StudyError(f"reference is {values.show(reference)}, expected the key of a run, or none", (*where, "reference"))
+    if problem.get("place") is not None:
+        _check_place(problem["place"], (*where, "place"))
     place = (*where, "spec")
     spec = _table(problem["spec"], ("grid", "start", "goal", *_SETTINGS), place, "the problem", ("moving",))
     width, height = _check_grid(spec["grid"], (*place, "grid"))
@@ -116,6 +119,21 @@ def _check_problem(problem: Mapping[str, Any], where: Where) -> None:
     if spec["representation"] is None or (spec["penalty"] is None) != (spec["obstacles"] == "constraint"):
         key = "representation" if spec["representation"] is None else "penalty"
         raise StudyError(f"{key} is {values.show(spec[key])}, expected what the problem is solved with", (*place, key))
+
+
+def _check_place(value: Any, where: Where) -> None:
+    """Refuse what `place_of_grid` did not say of a grid."""
+    place = _table(value, (), where, "the place of a map", ("origin", "robot_radius", "footprint", "original"))
+    grown = [key for key in ("robot_radius", "footprint", "original") if key in place]
+    if len(grown) not in (0, 3):
+        raise StudyError(f"there is {grown[0]} without the others, expected robot_radius, footprint and original", where)
+    if "origin" in place:
+        values.told((*where, "origin"), as_pose, place["origin"])
+    if grown:
+        values.real(place["robot_radius"], (*where, "robot_radius"))
+        _check_texts(place, ("original",), where)
+        if place["footprint"] is not None:
+            values.told((*where, "footprint"), as_footprint, place["footprint"])
 
 
 # Of things that a study's author brought along, a plan says enough: nothing is imported because a file names it.

@@ -65,8 +65,9 @@ class StoredRuns:
 class Store:
     """The folder of a study.
 
-    ``runs/<first two digits>/<key>.npz`` is a run, ``plan.json`` the plan, ``grids/<digest>.z`` the cells of a map,
-    ``study.toml`` the study file as it was given, ``damaged/`` what was found damaged. Nothing stands under its name before it
+    ``runs/<first two digits>/<key>.npz`` is a run, ``plan.json`` the plan, ``grids/<digest>.z`` the cells of a map, as planned
+    on and as they were before they grew, ``study.toml`` the study file as it was given, ``damaged/`` what was found damaged.
+    Nothing stands under its name before it
     is whole and on the disk.
 
     Parameters
@@ -171,9 +172,10 @@ class Store:
         if study is not None:
             checks.text("study", study)
         for planned in plan.problems:
-            file = self._grid_file(planned)
-            if planned.grid is not None and file is not None and not file.exists():
-                self._write(file, planned.grid)
+            for digest, cells in ((_planned_on(planned), planned.grid), (_before(planned), planned.original)):
+                file = self._grid_file(digest)
+                if cells is not None and file is not None and not file.exists():
+                    self._write(file, cells)
         self._write(self.folder / "plan.json", json.dumps(plan.to_json(), separators=(",", ":")).encode())
         file = self.folder / "study.toml"
         if study is not None:
@@ -187,12 +189,18 @@ class Store:
 
     def read_grid(self, planned: PlannedProblem) -> bytes | None:
         """Return the packed cells of a problem's map, or None of random grids, or where they are not there."""
-        file = self._grid_file(checks.instance("planned", planned, PlannedProblem))
+        return self._cells(_planned_on(checks.instance("planned", planned, PlannedProblem)))
+
+    def read_original(self, planned: PlannedProblem) -> bytes | None:
+        """Return the packed cells of a problem's map before obstacles grew, or None if none did, or they are not there."""
+        return self._cells(_before(checks.instance("planned", planned, PlannedProblem)))
+
+    def _cells(self, digest: str) -> bytes | None:
+        file = self._grid_file(digest)
         with readable(self.folder):
             return file.read_bytes() if file is not None and file.is_file() else None
 
-    def _grid_file(self, planned: PlannedProblem) -> Path | None:
-        digest = planned.spec["grid"].get("digest", "")
+    def _grid_file(self, digest: str) -> Path | None:
         return self.folder / "grids" / f"{digest}.z" if _DIGEST.fullmatch(digest) else None
 
     def read_plan(self) -> Plan:
@@ -306,6 +314,14 @@ class Store:
             for entry in os.scandir(folder):
                 if _is_unfinished(entry) and not entry.is_dir():
                     os.unlink(entry.path)
+
+
+def _planned_on(planned: PlannedProblem) -> str:
+    return planned.spec["grid"].get("digest", "")
+
+
+def _before(planned: PlannedProblem) -> str:
+    return (planned.place or {}).get("original", "")
 
 
 @contextlib.contextmanager

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
+from pymoo_gridpath.grid.arguments import as_footprint
 from pymoo_gridpath.maps import MAX_CELLS
 from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.problems import OBSTACLES
@@ -98,6 +99,8 @@ class ProblemSpec:
         Cells (x, y), y up; by default those that the map names.
     radius : float, default 0
         Robot radius in metres, by which obstacles are grown.
+    footprint : sequence of (float, float), optional
+        In place of the radius, the corners of the robot in metres, see `OccupancyGrid.inflate`.
     resolution, unknown, threshold, corner_cutting, moves : optional
         How the map is read, see `pymoo_gridpath.maps.load_map`.
     moving : MovingObstacles or mapping, optional
@@ -124,6 +127,7 @@ class ProblemSpec:
     start: tuple[int, int] | None = None
     goal: tuple[int, int] | None = None
     radius: float = 0.0
+    footprint: Any = None
     resolution: float | None = None
     unknown: str | None = None
     threshold: float | None = None
@@ -142,6 +146,9 @@ class ProblemSpec:
         set_given(self, "name", "map", "scen", check=values.text)
         set_given(self, "start", "goal", check=values.cell)
         set_fields(self, radius=values.real(self.radius, ("radius",)), queries=_queries(self.queries))
+        set_given(self, "footprint", check=lambda value, where: values.told(where, as_footprint, value))
+        if self.footprint is not None and self.radius:
+            raise StudyError("there are a radius and a footprint, expected one of them", ("footprint",))
         set_given(self, "resolution", check=lambda value, where: values.real(value, where, open_below=True))
         set_given(self, "unknown", check=lambda value, where: values.choice(value, UNKNOWN, where))
         set_given(self, "threshold", check=lambda value, where: values.real(value, where, 0.0, 1.0))
@@ -169,7 +176,7 @@ class ProblemSpec:
         if self.random is not None:
             set_fields(self, random=make_spec(RandomFamily, self.random, ("random",)))
         misplaced = {
-            "random": ("start", "goal", "radius", "resolution", "unknown", "threshold", *_STEPS, "queries"),
+            "random": ("start", "goal", "radius", "footprint", "resolution", "unknown", "threshold", *_STEPS, "queries"),
             "grid": ("resolution", "unknown", "threshold", *_STEPS),
         }
         for source, keys in misplaced.items():

@@ -12,8 +12,10 @@ import synthetic_study as made
 from scipy import stats
 from synthetic_study import Page, digests, rows, texts
 
+from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.errors import GridPathError
-from pymoo_gridpath.study import Store
+from pymoo_gridpath.study import ProblemSpec, Store, Study, run_study
+from pymoo_gridpath.study.planning.build import build_problem
 from pymoo_gridpath.study.report import write_report
 from pymoo_gridpath.study.report.results import collect
 
@@ -229,6 +231,42 @@ def test_each_merged_front_has_a_page_to_choose_from(done, tmp_path):
     left = {file.name for file in (tmp_path / "explorer").iterdir()}
     assert left == {"mine.html", *(link.removeprefix("explorer/") for link in links if "moead" not in link)}
     assert (tmp_path / links[0]).read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+
+
+def test_pages_know_the_robot_and_where_the_map_lies(tmp_path):
+    occupied = np.zeros((10, 12), dtype=bool)
+    occupied[4:6, 5] = True
+    grid = OccupancyGrid(occupied, 0.25, (-3.0, 1.0, 0.5), name="hall")
+    footprint = [(0.3, 0.1), (-0.3, 0.1), (-0.3, -0.1), (0.3, -0.1)]
+    study = Study(
+        problems=[ProblemSpec(grid=grid, start=(0, 0), goal=(11, 9), footprint=footprint)],
+        algorithms=[{"algorithm": "exact"}],
+        seeds=1,
+        budget={"generations": 1},
+        reference=False,
+    )
+    run_study(study, tmp_path / "study")
+    store = Store(tmp_path / "study")
+    (planned,) = store.read_plan().problems
+    assert planned.place == {
+        "origin": [-3.0, 1.0, 0.5],
+        "robot_radius": pytest.approx(0.1**0.5),
+        "footprint": [list(corner) for corner in footprint],
+        "original": grid.digest,
+    }
+    solved = build_problem(planned.spec, store.read_grid(planned), planned.place, store.read_original(planned))
+    grown = grid.inflate(footprint=footprint)
+    assert solved.grid.original == grid.replace(name="grid") and solved.grid == grown.replace(name="grid")
+    assert solved.grid.footprint == grown.footprint
+    write_report(store.folder, output=tmp_path, formats=())
+    (page,) = (tmp_path / "explorer").glob("*.html")
+    data = json.loads(re.search(r'id="data">(.*)</script>', page.read_text(encoding="utf-8"))[1])
+    assert data["map"]["origin"] == [-3.0, 1.0, 0.5] and data["grown"] is not None
+    assert "Clearance of the robot" in [column["label"] for column in data["columns"]]
+    # A folder of before has no more than what was planned on, and makes a page still.
+    store._grid_file(grid.digest).unlink()
+    solved = build_problem(planned.spec, store.read_grid(planned), planned.place, store.read_original(planned))
+    assert solved.grid.original is solved.grid and solved.grid.origin == grid.origin
 
 
 def test_genes_of_another_front_make_no_page(report):

@@ -31,13 +31,17 @@ def rows_of(store: Store, results: Results) -> Rows:
     """Return what reads rows of genes out of a study."""
 
     def read(problem: int, keys: Sequence[str]) -> tuple[GridPathProblem, list[np.ndarray]]:
-        records, grid = [store.read(key) for key in keys], store.read_grid(results.plan.problems[problem])
+        planned = results.plan.problems[problem]
+        records, cells = (
+            [store.read(key) for key in keys],
+            (store.read_grid(planned), planned.place, store.read_original(planned)),
+        )
         content = records[0].problem
         for thing in (*content["objectives"], content["representation"]):
             # Nothing is imported because a stored file names it.
             if not isinstance(thing, str) and not str(thing["class"]).startswith(f"{_PACKAGE}."):
                 raise GridPathError(f"{own.shown(thing)} is of another package, expected things of {_PACKAGE} alone")
-        return build_problem(content, grid), [record.X for record in records]
+        return build_problem(content, *cells), [record.X for record in records]
 
     return read
 
