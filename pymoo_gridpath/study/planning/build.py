@@ -109,18 +109,15 @@ def build_grid(spec: Mapping[str, Any], cells: bytes | None = None) -> Occupancy
     """
     if "random" in spec:
         family = spec["random"]
-        return random_dense_grid(family["size"], family["p0"], family["seed"]).replace(**_resolution_of(spec), **steps_of(spec))
+        return random_dense_grid(family["size"], family["p0"], family["seed"]).replace(
+            resolution=spec.get("resolution"), **steps_of(spec)
+        )
     if cells is None:
         raise GridPathError("the cells of the map are missing, expected those that were planned with")
-    grid = OccupancyGrid(_unpacked(cells, (spec["height"], spec["width"])), **_resolution_of(spec), **steps_of(spec))
+    grid = OccupancyGrid(_unpacked(cells, (spec["height"], spec["width"])), spec.get("resolution"), **steps_of(spec))
     if grid.digest != spec["digest"]:
         raise GridPathError("the cells of the map are not those that were planned with")
     return grid
-
-
-def _resolution_of(spec: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the resolution that a grid in canonical form states, as an argument; of one planned before they did, None."""
-    return {"resolution": spec.get("resolution")}
 
 
 def build_problem(
