@@ -205,6 +205,7 @@ def _problems(w: World) -> dict[str, Call]:
         "far_corners": (problems.far_corners, {"grid": w.grid}),
         "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
         "Length": (objectives.Length, {}),
+        "LeastClearance": (objectives.LeastClearance, {}),
         **{
             f"{type(one).__name__}.{method}": (getattr(one, method), given)
             for one in (
