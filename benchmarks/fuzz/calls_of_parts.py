@@ -240,7 +240,6 @@ def _problems(w: World) -> dict[str, Call]:
         "Objective.on": (objectives.Turn().on, {"grid": w.grid}),
         "GroundCost": (objectives.GroundCost, {"cost": w.field, "weight": 2.0, "per": "entry", "name": "mud", "label": "Mud"}),
         "Climb": (objectives.Climb, {"elevation": w.field, "name": "rise", "label": "Rise [m]"}),
-        "LeastClearance": (objectives.LeastClearance, {}),
         # An objective of one's own, whose field and values are arguments too.
         "Objective": (partial(_own_objective, w), {"field": w.field, "factor": np.ones(5)}),
     }
