@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
@@ -41,6 +42,12 @@ def objective_name(content: Any) -> str:
 def objective_label(content: Any) -> str:
     """Return how figures call an objective in canonical form, with its unit."""
     return of_package(Objective)[content].label if isinstance(content, str) else content["label"]
+
+
+def objective_axis(content: Any, grid: Mapping[str, Any]) -> tuple[str, float]:
+    """Return what an axis says of an objective on a grid, both in canonical form, and the factor of its values there."""
+    label, resolution = objective_label(content), grid.get("resolution")
+    return (label, 1.0) if resolution is None else (label.replace("[cells]", "[m]"), resolution if "[cells]" in label else 1.0)
 
 
 def is_maximised(content: Any) -> bool:
