@@ -205,10 +205,20 @@ def _problems(w: World) -> dict[str, Call]:
         "far_corners": (problems.far_corners, {"grid": w.grid}),
         "make_objectives": (objectives.make_objectives, {"objectives": ["length", "turn"]}),
         "Length": (objectives.Length, {}),
+        "LeastClearance": (objectives.LeastClearance, {}),
         **{
             f"{type(one).__name__}.{method}": (getattr(one, method), given)
-            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.Inflation())
-            for one in (objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.LeastClearance())
+            for one in (
+                *(objectives.Length(), objectives.Turn(), objectives.Vulnerability(2.0), objectives.Inflation()),
+                *(objectives.LeastClearance(), objectives.GroundCost(w.field), objectives.Climb(w.field)),
+                objectives.Length(),
+                objectives.Turn(),
+                objectives.Vulnerability(2.0),
+                objectives.Inflation(),
+                objectives.LeastClearance(),
+                objectives.GroundCost(w.field),
+                objectives.Climb(w.field),
+            )
             for method, given in (
                 ("field", {"grid": w.grid}),
                 ("field_in", {"grid": w.grid, "box": w.grid.whole}),
@@ -228,18 +238,8 @@ def _problems(w: World) -> dict[str, Call]:
         "Inflation": (objectives.Inflation, {"cost_scaling_factor": 3.0, "inflation_radius": 0.5}),
         "Inflation.potential": (objectives.Inflation().potential, {"grid": w.grid, "box": w.grid.whole}),
         "Objective.on": (objectives.Turn().on, {"grid": w.grid}),
-        "Turn.field": (objectives.Turn().field, {"grid": w.grid}),
-        "Turn.field_in": (objectives.Turn().field_in, {"grid": w.grid, "box": w.grid.whole}),
         "GroundCost": (objectives.GroundCost, {"cost": w.field, "weight": 2.0, "per": "entry", "name": "mud", "label": "Mud"}),
         "Climb": (objectives.Climb, {"elevation": w.field, "name": "rise", "label": "Rise [m]"}),
-        **{
-            f"{type(one).__name__}.{method}": (getattr(one, method), {"grid": w.grid})
-            for one in (objectives.GroundCost(w.field), objectives.Climb(w.field))
-            for method in ("field", "moves")
-        },
-        "LeastClearance.field": (objectives.LeastClearance().field, {"grid": w.grid}),
-        "Vulnerability.field": (objectives.Vulnerability(2.0).field, {"grid": w.grid}),
-        "Vulnerability.field_in": (objectives.Vulnerability(2.0).field_in, {"grid": w.grid, "box": w.grid.whole}),
         # An objective of one's own, whose field and values are arguments too.
         "Objective": (partial(_own_objective, w), {"field": w.field, "factor": np.ones(5)}),
     }

@@ -15,7 +15,9 @@ class LeastClearance(Objective):
     """Least distance of a visited cell from an obstacle, start and goal included, centre to centre in cells; more is better.
 
     As all objectives are minimised, ``F`` holds its negative: -2.0 is a path that keeps two cells away. Tables and figures show
-    the distance itself. The path that keeps furthest away is the widest of those from start to goal, and goes by that name.
+    the distance itself, figures and pages in metres where the map has them. Obstacles are those of the grid that is planned on:
+    where they were grown by a robot's radius, it is what there is beyond the robot. The path that keeps furthest away is the
+    widest of those from start to goal, and goes by that name.
 
     On a map without obstacles every path has the diagonal of the map, more than any distance on it. The edge of the map is no
     obstacle.

@@ -136,7 +136,7 @@ def _draw_plane(ax: Axes, trade_off, columns, groups, other, reference_label: st
         low, high = style.span(values)
         look = {"c": values, "cmap": "cividis", "vmin": low, "vmax": high}
         dots = ax.scatter(*F.T, s=18, **look, zorder=3, label="trade-off paths")
-        bar = ax.figure.colorbar(dots, ax=ax, label=other_one.label, pad=0.02)
+        bar = ax.figure.colorbar(dots, ax=ax, label=axis_of(other_one, trade_off.problem.grid)[0], pad=0.02)
         bar.outline.set_linewidth(0.5)  # pyright: ignore[reportCallIssue]
     else:
         ax.scatter(*F.T, s=14, color=style.OTHERS, zorder=3, label="trade-off paths")

@@ -103,13 +103,13 @@ def test_figures_show_the_distance(objectives, tmp_path):
     ax = plot_front(paths)
     ax.figure.canvas.draw()
     axis = ax.yaxis if len(objectives) == 2 else ax.zaxis
-    assert axis.get_label_text() == "Least clearance [cells], more is better"
+    assert axis.get_label_text() == "Least clearance [m], more is better"
     ticks = shown_numbers(axis)
     assert len(ticks) >= 2 and all(number == pytest.approx(-place) for place, number in ticks)
-    assert ax.get_xlabel() == "Path length [cells]"
+    assert ax.get_xlabel() == "Path length [m]"
     if len(objectives) == 3:
         bar = plot_front(paths, objectives=objectives[:2]).figure.axes[-1]
-        assert bar.get_ylabel() == "Least clearance [cells]" and min(bar.get_ylim()) > 0
+        assert bar.get_ylabel() == "Least clearance [m]" and min(bar.get_ylim()) > 0
         assert save_figures(paths, tmp_path, formats=["png"])
     plt.close("all")
 
