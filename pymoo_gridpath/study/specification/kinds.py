@@ -27,7 +27,9 @@ def objective_entry(form: Any) -> Any:
     """Return an objective of a study in canonical form; one that has a name in this package alone keeps that."""
     given = own.read(form, OBJECTIVE, ("objectives",))
     made = given.cls(**given.arguments)
-    content = own.entry(given, label=made.label, **({"maximise": True} if made.maximise else {}))
+    facts = {"maximise": True} if made.maximise else {}
+    files = {key: own.digest_of(given.arguments[key]) for key in given.cls.files if isinstance(given.arguments.get(key), str)}
+    content = own.entry(given, label=made.label, **facts, **({"files": files} if files else {}))
     return content if isinstance(content, str) else {**content, "name": made.name}
 
 
