@@ -128,7 +128,7 @@ def map_workloads(folder: Path) -> Iterator[tuple[str, Callable[[], Callable[[],
         yield f"exact, {name}", fronts(maps[name], some, paper)
     for name, occupied in drawn_maps().items():
         grid = OccupancyGrid(occupied)
-        yield f"exact, {name}", fronts(grid, [half_way(grid)], paper)
+        yield f"exact, {name}", fronts(grid, [part_way(grid, 0.1 if name == "maze of 8" else 0.5)], paper)
     yield f"exact, {wide}, longest", fronts(maps[wide], [longest[wide]], paper)
     for name in (lak, "random-64-64-20"):
         yield f"exact, three objectives, {name}", fronts(maps[name], [half[name]], [*paper, Turn()])
@@ -172,14 +172,14 @@ def maze(n: int, corridor: int, draw: np.random.Generator) -> np.ndarray:
     return occupied
 
 
-def half_way(grid):
-    """Return a cell at a corner of the largest region, and one half as far from it as the farthest."""
+def part_way(grid, share):
+    """Return a cell at a corner of the largest region, and one that is a share as far from it as the farthest."""
     regions = grid.regions
     y, x = np.nonzero(regions == np.bincount(regions[regions > 0]).argmax())
     k = np.argmin(x + y)
     start = int(x[k]), int(y[k])
     length = grid.shortest_lengths(start)[y, x]
-    k = np.argmin(np.abs(length - length.max() / 2))
+    k = np.argmin(np.abs(length - share * length.max()))
     return start, (int(x[k]), int(y[k]))
 
 
