@@ -169,8 +169,8 @@ class Backward:
             if done or (stop is not None and stop()):
                 break
 
-    def first_heading(self, cell: int) -> int:
-        """Return the heading of the first step of the cheapest path that begins in a cell, -1 if there is none."""
+    def first_step(self, cell: int) -> tuple[int, int]:
+        """Return the first cost of the cheapest path that begins in a cell, and the heading of its first step, -1 for none."""
         best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights if self._fused else None
         for m in range(8):
             if not self.moves.legal[cell] >> m & 1:
@@ -182,7 +182,7 @@ class Backward:
                     total = total + (costs if weights is None else _sums(costs, weights))
             if tuple(total.tolist()) < best:
                 best, first = tuple(total.tolist()), m
-        return first
+        return best[0], first
 
 
 def _sums(costs: np.ndarray, weights: tuple[float, float]) -> np.ndarray:
