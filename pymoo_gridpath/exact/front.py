@@ -118,8 +118,8 @@ def exact_front(
         `integer_costs`, or by one of them a detour may be the better way and the representation codes none. With ``epsilon`` or
         ``share``, if there are three, a potential limit, obstacles that move, or costs that have to be rounded.
     GridPathError
-        If the problem is no path problem, a score is not the sum of what its objective says, or ``epsilon`` and ``share`` are out
-        of their range or both given.
+        If the problem is no path problem, a score is not the sum of what its objective says, or ``epsilon`` and ``share`` are
+        out of their range or both given.
 
     Examples
     --------

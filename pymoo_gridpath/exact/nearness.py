@@ -166,4 +166,5 @@ def certificate(known: np.ndarray, lines: Lines, begin: np.ndarray, searched: in
         factor = above / ((least + weights @ begin.astype(float)) * (1 - _ROUNDING))
         share = above / (weights @ np.array(extent, dtype=float) * (1 - _ROUNDING))
     worst = [np.where(above > 0.0, value, 0.0).min(axis=1).max() for value in (factor, share)]
-    return Certificate(*(float(value) for value in worst))
+    # An end of the front is never farther off than the range.
+    return Certificate(float(worst[0]), min(float(worst[1]), 1.0))

@@ -37,7 +37,7 @@ from pymoo_gridpath.exact.labels import (
     is_detour,
     load_of,
 )
-from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, certificate, lowered
+from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, lowered
 from pymoo_gridpath.exact.supported import Hull, non_dominated, supported_points
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
@@ -60,9 +60,7 @@ _LARGE = 2**17
 _CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
 
 
-def front_of_two(
-    moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, allowance: Allowance | None = None
-) -> Front:
+def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, allowance: Allowance | None = None) -> Front:
     """Return the exact front of two objectives, or paths that are proven to come near to it.
 
     Of paths with the same costs it holds the one that `smoothest_paths` chooses, as long as memory lasts; any one if a cost
@@ -99,10 +97,8 @@ def front_of_two(
         found.append(Front(search.paths(), search.points()))
         known = non_dominated(np.concatenate([known, found[-1].points]))
         proven = search.certificate(known)
-    if meter.message or allowance.name:
-        front = merged(found)
-    else:
-        front = Front(search.smoothest_paths(meter), search.points())
+    early = meter.message or allowance.name
+    front = merged(found) if early else Front(search.smoothest_paths(meter), search.points())
     return Front([moves.from_grid(hull.moves.to_grid(path)) for path in front.paths], front.points, proven)
 
 
@@ -184,6 +180,7 @@ class _Search(LabelSearch):
         if self.tolerance == 0.0 and not self.counts[N_OPEN] and not self.allowance.name:
             return WHOLE
         proven = self.hull.certificate(known)
+        assert proven is not None
         if self.tolerance > 0.0:
             return proven
         # Labels come in ascending order of the first cost: what is before that of the next has been dealt with.
