@@ -184,7 +184,7 @@ def exact_front(
         # What was left out, or not searched, may be far from what was found.
         certified = None
     complete = not meter.message and (not allowance.name or certified == WHOLE)
-    near = f", {certified}" if certified is not None else ""
+    near = "" if certified is None else f", {certified.said(allowance.name) if allowance.share else certified}"
     if meter.message:
         message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}{near}"
     elif not complete:

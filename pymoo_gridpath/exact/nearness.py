@@ -49,9 +49,12 @@ class Certificate:
 
     def __str__(self):
         # A factor of two and more says little.
-        if self.epsilon <= 1.0 or self.epsilon <= self.share:
-            return f"within {_percent(self.epsilon)} of the front"
-        return f"within {_percent(self.share)} of the front's range"
+        return self.said("epsilon" if self.epsilon <= 1.0 or self.epsilon <= self.share else "share")
+
+    def said(self, name: str) -> str:
+        """Return one of the two in words."""
+        of = {"epsilon": "the front", "share": "the front's range"}
+        return f"within {_percent(getattr(self, name))} of {of[name]}"
 
 
 #: Of the whole front.
