@@ -91,7 +91,9 @@ class Allowance:
         for name in ("epsilon", "share"):
             value = getattr(self, name)
             if value is not None:
-                checks.number(name, value, 0.0, 1.0, above=True, expected="a number above 0, at most 1: 0.02 for 2 %")
+                expected = "a number above 0, at most 1: 0.02 for 2 %"
+                # As a plain number, whatever it was given as.
+                object.__setattr__(self, name, checks.number(name, value, 0.0, 1.0, above=True, expected=expected))
         if self.epsilon is not None and self.share is not None:
             raise GridPathError("epsilon and share are given, expected one of them")
 
