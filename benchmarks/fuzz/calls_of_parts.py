@@ -150,7 +150,7 @@ def _problems(w: World) -> dict[str, Call]:
             {**metres, "movers": [[(-1, 0), (-2, 0)]], "horizon": 12},
         ),
         "GridPathProblem.over_limit": (limited.over_limit, {"vulnerability": np.array([1.0, 9.0])}),
-        "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0}),
+        "GridPathProblem.pareto_front": (_fresh(w, "pareto_front"), {"max_seconds": 2.0, "epsilon": 0.02}),
         "GridPathProblem.pareto_set": (_fresh(w, "pareto_set"), {"max_seconds": 2.0}),
         "GridPathProblem.restart": (problem.restart, {}),
         "GridPathProblem.score": (problem.score, {"paths": paths}),
@@ -350,7 +350,11 @@ def _search(w: World) -> dict[str, Call]:
         "igd_plus": (quality.igd_plus, {"F": front + 0.5, "front": front}),
         "share_found": (quality.share_found, {"F": front, "front": front}),
         "Budget": (exact.Budget, {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False}),
-        "exact_front": (exact.exact_front, {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0)}),
+        "Certificate": (exact.Certificate, {"epsilon": 0.02, "share": 0.1}),
+        "exact_front": (
+            exact.exact_front,
+            {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0), "epsilon": 0.02, "share": None},
+        ),
         "exact_timed_front": (
             exact.exact_timed_front,
             {

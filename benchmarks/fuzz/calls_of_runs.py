@@ -107,7 +107,7 @@ def _algorithms(w: World) -> dict[str, Call]:
         "PathOutput": (algorithms.PathOutput, {"distance": False}),
         "ExactFront": (
             algorithms.ExactFront,
-            {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False},
+            {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False, "epsilon": 0.02},
         ),
         "minimize_runs": (
             algorithms.minimize_runs,

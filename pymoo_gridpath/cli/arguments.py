@@ -63,13 +63,13 @@ def above_zero(text: str) -> float:
 
 
 def share(text: str) -> float:
-    """Return the number above 0, at most 1, that a text says."""
+    """Return the number above 0, at most 1, that a text such as "0.02" or "2%" says."""
     try:
-        number = float(text)
+        number = float(text[:-1]) / 100 if text.endswith("%") else float(text)
     except ValueError:
         number = math.nan
     if not 0.0 < number <= 1.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0, at most 1")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0, at most 1, or per cent such as 2%")
     return number
 
 

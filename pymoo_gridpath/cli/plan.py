@@ -18,6 +18,7 @@ from pymoo_gridpath.cli.arguments import (
     natural,
     operators,
     positive,
+    share,
 )
 from pymoo_gridpath.cli.ground import add_ground, given_ground, ground_of
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
     from pymoo_gridpath.grid import OccupancyGrid
 
 DEFAULT_MAP = "warehouse"
+
+# Options that planners take, each those that its constructor does.
+PLANNERS_OWN = ("max_seconds", "epsilon", "share")
 
 RISKS = ("robot", "paper", "inflation")
 
@@ -97,6 +101,16 @@ def add_plan_command(commands) -> None:
     search.add_argument("--generations", type=positive, metavar="N", help="generations of a run (default: 200)")
     search.add_argument("--runs", type=positive, metavar="N", help="runs that are merged into one front (default: 1)")
     search.add_argument("--max-seconds", type=float, metavar="S", help="time of a planner; what it has found by then is kept")
+    near = search.add_mutually_exclusive_group()
+    near.add_argument(
+        "--epsilon",
+        type=share,
+        metavar="E",
+        help="of --algorithm exact: content with a front proven to be within this factor in each objective, such as 2%%",
+    )
+    near.add_argument(
+        "--share", type=share, metavar="S", help="the same with a share of each objective's range, where one may be zero"
+    )
     search.add_argument("--seed", type=natural, default=1, help="seed of the first run; run k has seed + k (default: 1)")
     add_ground(plan)
     plan.add_argument(
@@ -214,6 +228,8 @@ def _carry_out(problem, name: str, spec, algorithm, arguments, source: dict, unk
         print("interrupted: what was found until then follows", file=sys.stderr)
     elif results and results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
+    elif results and (arguments.epsilon or arguments.share):
+        print(f"{name}: {results[0].message}")
     print(trade_off.table(max_rows=MAX_ROWS))
     if arguments.show:
         show(scene_of(trade_off))
@@ -283,7 +299,7 @@ def _settle_options(spec, name: str, arguments) -> None:
         "operators": spec.takes_operators or not is_planner,
         "generations": spec.takes_generations,
         "runs": not spec.deterministic,
-        "max_seconds": is_planner and "max_seconds" in spec.parameters(),
+        **{option: is_planner and option in spec.parameters() for option in PLANNERS_OWN},
     }
     for option, taken in takes.items():
         if getattr(arguments, option) is not None and not taken:
@@ -310,7 +326,7 @@ def _algorithm(name: str, spec, problem, arguments, start=None, **more):
             "sampling": GivenRows(start, default_operators(problem)["sampling"]),
         }
     if isinstance(spec, type):
-        more = {"max_seconds": arguments.max_seconds, **more}
+        more = {**{option: getattr(arguments, option) for option in PLANNERS_OWN}, **more}
         given |= {key: value for key, value in more.items() if key in spec.parameters()}
     return make_algorithm(name, problem, **given)
 

@@ -65,8 +65,8 @@ def _describe_growth(grid: OccupancyGrid) -> dict:
 def describe_run(result) -> dict:
     """Return the algorithm of a pymoo Result, its parameters, operators, generations, evaluations and seed.
 
-    What the Result does not tell is None. Of a planner, also whether it is
-    complete, how it ended, and the budget that it had.
+    What the Result does not tell is None. Of a planner, also whether it is complete, how it ended, and the budget that it had;
+    and, as far as it has such, how near to the front it was to come, and is proven to.
     """
     algorithm = getattr(result, "algorithm", None)
     iterations = getattr(algorithm, "n_iter", None)
@@ -100,10 +100,14 @@ def _search(result, algorithm) -> dict:
     success = getattr(result, "success", None)
     if not isinstance(success, bool):
         return {}
+    certified, allowance = getattr(result, "certified", None), _scalars(getattr(algorithm, "allowance", None))
     return {
-        "complete": success,
+        # What comes near enough to a front is a success.
+        "complete": getattr(getattr(algorithm, "found", None), "complete", success),
         "message": getattr(result, "message", ""),
         "budget": _scalars(getattr(algorithm, "budget", None)),
+        **({"allowance": allowance} if any(allowance.values()) else {}),
+        **({} if certified is None else {"certified": _scalars(certified)}),
     }
 
 

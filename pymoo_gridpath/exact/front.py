@@ -16,6 +16,7 @@ from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
 from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.levels import Known, cell_levels, over_levels
+from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate
 from pymoo_gridpath.exact.one import front_of_one
 from pymoo_gridpath.exact.three import front_of_three
 from pymoo_gridpath.exact.timed import exact_timed_front
@@ -57,7 +58,13 @@ class ExactResult:
         unless the time was too short even for these, and the best paths between them that were found, which may lie off the
         front; of three a part of the front. Where rows are too short for some paths of the front, any paths that fit.
     complete : bool
-        Whether this is the whole front. If not, a budget was used up.
+        Whether this is the whole front. If not, a budget was used up, or paths near it were all that was asked for.
+    success : bool
+        Whether this is what was asked for.
+    certified : Certificate or None
+        How near to the whole front this is proven to be. None where nothing is proven: where a budget ended a search for three
+        objectives, within a potential limit, in rows that are too short for some of the paths, or before all levels of a worst
+        cell were searched, or was too short for the ends of the front; and where costs had to be rounded to whole numbers.
     message : str
         How the search ended, and whether the representation is too short for some paths of the front of all paths.
     n_labels, n_bytes : int
@@ -69,14 +76,18 @@ class ExactResult:
     X: np.ndarray
     F: np.ndarray
     complete: bool
+    success: bool
+    certified: Certificate | None
     message: str
     n_labels: int
     n_bytes: int
     seconds: float
 
 
-def exact_front(problem, budget: Budget | None = None) -> ExactResult:
-    """Return the Pareto front of the legal paths of a problem.
+def exact_front(
+    problem, budget: Budget | None = None, *, epsilon: float | None = None, share: float | None = None
+) -> ExactResult:
+    """Return the Pareto front of the legal paths of a problem, or paths that are proven to come near to it.
 
     Legal paths cross no occupied cell and, with ``obstacles="limit"``, keep the potential limit. Those of a monotone
     representation never turn back along its axis. Those of `CellSequence` visit no more than its ``max_cells`` cells. Of a
@@ -89,6 +100,12 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         some of which the worst cell of a path decides, such as the least clearance, and at most three others.
     budget : Budget, optional
         What the search may use; by default 70 % of the free memory, and as long as it takes.
+    epsilon : float, optional
+        How near is near enough, above 0 up to 1: for every point q of the front there has to be a path with objectives
+        p <= (1 + epsilon) q, such as 0.02 for 2 %. By default the front is exact. With one or two objectives that add up, whose
+        costs are whole numbers of a unit; by others, of which the worst cell decides, p is no worse than q.
+    share : float, optional
+        The same for p <= q + share * (the range of the objective over the front), for objectives that come near 0.
 
     Returns
     -------
@@ -98,9 +115,11 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     ------
     CapabilityError
         If there are more than three objectives besides those of which the worst cell decides, one of these does not add up, see
-        `integer_costs`, or by one of them a detour may be the better way and the representation codes none.
+        `integer_costs`, or by one of them a detour may be the better way and the representation codes none. With ``epsilon`` or
+        ``share``, if there are three, a potential limit, obstacles that move, or costs that have to be rounded.
     GridPathError
-        If the problem is no path problem, or a score is not the sum of what its objective says.
+        If the problem is no path problem, a score is not the sum of what its objective says, or ``epsilon`` and ``share`` are
+        out of their range or both given.
 
     Examples
     --------
@@ -112,7 +131,9 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
     """
     moves = representation_of(problem).moves
     checks.instance("budget", budget, Budget, optional=True)
+    allowance = Allowance(epsilon, share)
     if problem.representation.timed:
+        _refuse(allowance, "obstacles that move")
         return _front_in_time(problem, budget)
     summed, worst = _kinds(problem)
     if len(summed) > 3:
@@ -122,6 +143,11 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         raise CapabilityError(
             f"{moves.n_cells:,} cells of the grid are to be searched, expected fewer than {_MOST_CELLS:,} for an exact front"
         )
+    if len(summed) == 3:
+        _refuse(allowance, "three objectives that add up")
+    if problem.obstacles == "limit":
+        # A path within it may be near to none but such that exceed it.
+        _refuse(allowance, "a potential limit")
     meter = Meter(budget or Budget())
     usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)
     objectives: list[Objective] = [problem.objectives[k] for k in summed]
@@ -132,13 +158,14 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
 
     def search(most=None):
         def part(moves, usable):
-            return _search(problem, objectives, moves, usable, meter, set(), most)
+            return _search(problem, objectives, moves, usable, meter, allowance, set(), most)
 
         ends = moves.index(problem.start), moves.index(problem.goal)
         return over_levels(levels, moves, usable, ends, not summed and most is None, meter, part)
 
     parts = search()
-    paths, F, X = _merged(problem, parts, early=bool(meter.message))
+    certified = _proven(parts)
+    paths, F, X = _merged(problem, parts, early=bool(meter.message or allowance.name))
     longest = max(map(len, paths), default=0)
     if longest > most:
         whole = F
@@ -146,18 +173,26 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         within = [part.up_to(most) for part in parts]
         if not meter.message:
             parts = search(most)
+            certified = _proven(parts)
             within = within + parts if meter.message else parts
         paths, F, X = _merged(problem, within, early=bool(meter.message))
         # Other paths may have the same costs.
         if whole.shape == F.shape and np.allclose(whole, F, rtol=_EQUAL, atol=0.0):
             longest = max(map(len, paths))
     short = f" with at most {most} cells, the max_cells of the representation" if longest > most else ""
+    if meter.message and (worst or short or problem.obstacles == "limit"):
+        # What was left out, or not searched, may be far from what was found.
+        certified = None
+    complete = not meter.message and (not allowance.name or certified == WHOLE)
+    near = "" if certified is None else f", {certified.said(allowance.name) if allowance.share else certified}"
     if meter.message:
-        message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}"
+        message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}{near}"
+    elif not complete:
+        message = f"{counted(len(F), 'path')} found{near}"
     elif len(F) and short:
-        message = (
-            f"all {counted(len(F), 'point')} found of paths{short}; without that limit the front has paths of up to {longest}"
-        )
+        # Paths near the front may be longer than its own.
+        more = "" if allowance.name else f"; without that limit the front has paths of up to {longest}"
+        message = f"all {counted(len(F), 'point')} found of paths{short}{more}"
     elif len(F):
         message = f"all {counted(len(F), 'point')} found"
     elif short:
@@ -168,7 +203,22 @@ def exact_front(problem, budget: Budget | None = None) -> ExactResult:
         message = f"no legal path keeps the potential limit of {problem.potential_limit:g}"
     if X is None:
         X = problem.representation.from_sequences(_sequences(paths))
-    return ExactResult(X, F, not meter.message, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
+    success = complete or allowance.allows(certified)
+    return ExactResult(X, F, complete, success, certified, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
+
+
+def _refuse(allowance: Allowance, what: str) -> None:
+    """Refuse to search for paths near the front where nothing would be proven."""
+    if allowance.name:
+        raise CapabilityError(f"{allowance.name} is not for {what}, of which no front is certified to be near; expected none")
+
+
+def _proven(parts: list[_Part]) -> Certificate | None:
+    """Return what is proven of all parts together: of each, as a part has no larger ranges than the whole."""
+    each = [part.certified for part in parts]
+    if None in each:
+        return None
+    return Certificate(*(max((getattr(one, name) for one in each), default=0.0) for name in ("epsilon", "share")))
 
 
 def _kinds(problem) -> tuple[list[int], list[int]]:
@@ -186,7 +236,9 @@ def _front_in_time(problem, budget: Budget | None) -> ExactResult:
         problem.grid, problem.start, problem.goal, coding.movers, coding.horizon, problem.variance, budget
     )
     X = coding.from_sequences(_sequences([path @ (1, problem.grid.width) for path in found.paths]))
-    return ExactResult(X, found.F, found.complete, found.message, found.n_labels, found.n_bytes, working_seconds() - begin)
+    certified = WHOLE if found.complete else None
+    rest = found.message, found.n_labels, found.n_bytes, working_seconds() - begin
+    return ExactResult(X, found.F, found.complete, found.complete, certified, *rest)
 
 
 class _Part(NamedTuple):
@@ -201,17 +253,20 @@ class _Part(NamedTuple):
         By how much that may be off, where costs had to be rounded.
     rounded : numpy.ndarray of bool, shape (k,)
         Whether they had to be.
+    certified : Certificate or None
+        How near they are proven to come to the front of what was searched.
     """
 
     paths: list[np.ndarray]
     F: np.ndarray
     off: np.ndarray
     rounded: np.ndarray
+    certified: Certificate | None
 
     def up_to(self, most: int) -> _Part:
         """Return what was found of paths that visit at most so many cells."""
         keep = [k for k, path in enumerate(self.paths) if len(path) <= most]
-        return _Part([self.paths[k] for k in keep], self.F[keep], self.off[keep], self.rounded)
+        return _Part([self.paths[k] for k in keep], self.F[keep], self.off[keep], self.rounded, None)
 
 
 def _search(
@@ -220,6 +275,7 @@ def _search(
     moves: Moves,
     usable: np.ndarray,
     meter: Meter,
+    allowance: Allowance,
     searched: set[bytes],
     most: int | None = None,
 ) -> list[_Part]:
@@ -230,6 +286,9 @@ def _search(
     """
     costs = integer_costs(objectives, problem.grid, moves, usable)
     _check_detours(problem, objectives, costs)
+    if costs.rounded.any():
+        name = objectives[int(np.flatnonzero(costs.rounded)[0])].name
+        _refuse(allowance, f"the objective {name!r}, whose costs have to be rounded")
     start, goal = moves.index(problem.start), moves.index(problem.goal)
     order = costs.order
     if most is not None:
@@ -240,10 +299,11 @@ def _search(
         front = front_of_one(moves, costs, start, goal, meter)
     else:
         # A single objective that depends on headings is searched as two equal ones.
-        front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter)
+        front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter, allowance)
     points = front.points[:, np.argsort(order)] + costs.field[:, start]
     lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
-    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.off, costs.rounded)]
+    certified = None if costs.rounded.any() else front.certified
+    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.off, costs.rounded, certified)]
     finer = [_cheap_part(points[:, k], costs, k, moves, usable, start) for k in np.flatnonzero(costs.rounded).tolist()]
     del costs, front
     for part in finer:
@@ -252,7 +312,7 @@ def _search(
             key = cheap.legal.tobytes() + within.tobytes()
             if key not in searched:
                 searched.add(key)
-                parts += _search(problem, objectives, cheap, within, meter, searched, most)
+                parts += _search(problem, objectives, cheap, within, meter, allowance, searched, most)
     return parts
 
 
@@ -277,7 +337,8 @@ def _front_of_short_paths(moves: Moves, costs: Costs, start: int, goal: int, mos
         if not meter.message:
             found = front_of_three(moves, _three(costs.take(objectives)), start, goal, meter, most_steps).paths
             paths = paths + found if len(objectives) < n_obj or meter.message else found
-    return Front(paths, np.array([_costs_of(path, moves, costs) for path in paths], dtype=np.int64).reshape(-1, n_obj))
+    points = np.array([_costs_of(path, moves, costs) for path in paths], dtype=np.int64).reshape(-1, n_obj)
+    return Front(paths, points, None if meter.message else WHOLE)
 
 
 def _three(costs: Costs) -> Costs:

@@ -15,6 +15,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.nearness import Certificate
 from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
 from pymoo_gridpath.search import Moves
 
@@ -36,10 +37,13 @@ class Front(NamedTuple):
         Indices of the cells of each, from the start to the goal.
     points : numpy.ndarray of int64, shape (N, k)
         Their costs, without that of the start cell.
+    certified : Certificate, optional
+        How near they are proven to come to the front.
     """
 
     paths: list[np.ndarray]
     points: np.ndarray
+    certified: Certificate | None = None
 
 
 class LabelSearch(ABC):

@@ -8,6 +8,7 @@ from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.exact.labels import Front
+from pymoo_gridpath.exact.nearness import WHOLE
 from pymoo_gridpath.exact.tie_break import smoothest_paths
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_key, push_key
@@ -47,7 +48,7 @@ def front_of_one(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     meter.note(len(closed), closed.nbytes)
     end = np.flatnonzero(closed[:, 0] == goal)
     paths = smoothest_paths(moves, costs, closed, end, meter)
-    return Front(paths, ahead[start].reshape(1, 1))
+    return Front(paths, ahead[start].reshape(1, 1), WHOLE)
 
 
 @kernel

@@ -11,6 +11,7 @@ import numpy as np
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.nearness import Allowance, Certificate, Lines, certificate
 from pymoo_gridpath.neighbourhood import OPPOSITE
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.shortest import Backward
@@ -45,6 +46,8 @@ class Hull(NamedTuple):
         a bound and takes half the room. Huge where no path to a point in the gap can lead.
     column : numpy.ndarray of int64, shape (n_gaps,)
         Column of ``weighted`` for each gap.
+    lines : Lines
+        The weighted sums that were minimised.
     """
 
     moves: Moves
@@ -57,9 +60,21 @@ class Hull(NamedTuple):
     weights: np.ndarray
     weighted: np.ndarray
     column: np.ndarray
+    lines: Lines
+
+    @property
+    def begin(self) -> np.ndarray:
+        """What the start costs, which ``points`` are without, int64, shape (2,)."""
+        return self.costs.field[:, self.start]
+
+    def certificate(self, known: np.ndarray, searched: int | None = None) -> Certificate | None:
+        """Return how near known points are proven to come to the front, see `certificate`; None if no point is known."""
+        return certificate(known, self.lines, self.begin, searched) if len(known) else None
 
 
-def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter) -> Hull:
+def supported_points(
+    moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, allowance: Allowance
+) -> Hull:
     """Return ends and hull of a front of two objectives by single-objective searches.
 
     Parameters
@@ -73,6 +88,8 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     meter : Meter
         Once a budget is used up, no more of them are minimised. The two ends are found in any case, unless the time does not
         suffice for the searches that they take: then there is no point.
+    allowance : Allowance
+        Nor are more minimised once the points are proven to come that near to the front.
 
     References
     ----------
@@ -80,17 +97,19 @@ def supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weight
     gap between two points).
     """
     if not COMPILED or moves.n_cells < _CELLS_WORTH_THREADS:
-        return _supported_points(moves, costs, start, goal, n_weights, meter, map)
+        return _supported_points(moves, costs, start, goal, n_weights, meter, allowance, map)
     with ThreadPoolExecutor(_SIDE_BY_SIDE) as threads:
         try:
-            return _supported_points(moves, costs, start, goal, n_weights, meter, threads.map)
+            return _supported_points(moves, costs, start, goal, n_weights, meter, allowance, threads.map)
         except BaseException as error:
             # Such as Ctrl-C: the searches under way have to end, too.
             meter.message = meter.message or f"ended by {type(error).__name__}"
             raise
 
 
-def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, map_) -> Hull:
+def _supported_points(
+    moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, allowance: Allowance, map_
+) -> Hull:
     whole = moves
     bounds, ends = _ends(moves, costs, start, goal, meter, map_)
     if meter.message:
@@ -117,21 +136,22 @@ def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weigh
     n_weights = _affordable(n_weights, bounds, costs, meter)
     weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
-    found, used = {left: first, right: last}, []
+    found, used, sums_of = {left: first, right: last}, [], []
     # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
     gaps, narrow = [(0.0, left, right, 0)] if left != right else [], []
     while gaps and len(used) < n_weights:
         meter.check()
-        if meter.message:
+        if meter.message or (allowance.name and allowance.allows(_certificate(found, used, sums_of, costs, start))):
             break
         widest = [heapq.heappop(gaps) for _ in range(min(_SIDE_BY_SIDE, len(gaps), n_weights - len(used)))]
         for gap, least in zip(widest, list(map_(minimise, widest)), strict=True):
             if least is None:
                 heapq.heappush(gaps, gap)
                 continue
-            (sums, point, path), column = least, len(used)
+            (sums, total, point, path), column = least, len(used)
             _, low, high, _ = gap
             used.append(_normal(low, high))
+            sums_of.append(total)
             weighted[:, column] = _rounded_down(sums)
             if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
                 found[point] = path
@@ -142,10 +162,24 @@ def _supported_points(moves: Moves, costs: Costs, start: int, goal: int, n_weigh
     narrow += [(low, column) for _, low, _, column in gaps]
     points = sorted(found)
     paths = [found[point] for point in points]
+    given = moves, costs, start, goal, bounds, np.array(points), paths
     if not used:
-        return Hull(moves, costs, start, goal, bounds, np.array(points), paths, *_no_weights(bounds))
+        return Hull(*given, *_no_weights(bounds))
     column = np.array([column for _, column in sorted(narrow)])
-    return Hull(moves, costs, start, goal, bounds, np.array(points), paths, np.array(used)[column], weighted, column)
+    return Hull(*given, np.array(used)[column], weighted, column, Lines(np.array(used), np.array(sums_of, dtype=float)))
+
+
+def non_dominated(points: np.ndarray) -> np.ndarray:
+    """Return the non-dominated ones of points, shape (n, 2), each once and in ascending order of the first cost."""
+    points = points[np.lexsort((points[:, 1], points[:, 0]))]
+    best_before = np.concatenate([[UNREACHABLE], np.minimum.accumulate(points[:-1, 1])])
+    return points[points[:, 1] < best_before]
+
+
+def _certificate(found, used: list, sums_of: list[int], costs: Costs, start: int) -> Certificate:
+    """Return how near the points found so far are proven to come to the front."""
+    lines = Lines(np.array(used).reshape(-1, 2), np.array(sums_of, dtype=float))
+    return certificate(non_dominated(np.array(list(found))), lines, costs.field[:, start])
 
 
 def _ends(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, map_):
@@ -179,9 +213,10 @@ def _around(near: np.ndarray, moves: Moves, costs: Costs, start: int, goal: int,
     return part, costs.within(moves, part), int(ends[0]), int(ends[1]), [moves.part_of(array, part) for array in arrays]
 
 
-def _no_weights(bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return weights, weighted sums and their columns when none was minimised."""
-    return np.ones((1, 2)), _rounded_down(bounds.sum(axis=0))[:, None], np.zeros(1, dtype=np.int64)
+def _no_weights(bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Lines]:
+    """Return weights, weighted sums, their columns, and lines when none was minimised."""
+    lines = Lines(np.empty((0, 2)), np.empty(0))
+    return np.ones((1, 2)), _rounded_down(bounds.sum(axis=0))[:, None], np.zeros(1, dtype=np.int64), lines
 
 
 def _rounded_down(sums: np.ndarray) -> np.ndarray:
@@ -205,7 +240,7 @@ def _follow(moves: Moves, costs: Costs, found: Backward, start: int, goal: int):
     total = np.zeros(2, dtype=np.int64)
     path = np.empty(moves.n_cells + 1, dtype=np.int64)
     arrays = costs.step, costs.field, costs.enter, costs.with_heading, found.ahead
-    n = follow(moves.offsets, *arrays, start, found.first_heading(start), goal, total, path)
+    n = follow(moves.offsets, *arrays, start, found.first_step(start)[1], goal, total, path)
     return (int(total[0]), int(total[1])), path[:n].copy()
 
 
@@ -240,7 +275,7 @@ def _normal(low, high) -> tuple[float, float]:
 
 
 def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent: np.ndarray, corner, meter: Meter):
-    """Return least weighted sums from every state, rounded down step by step, and the point and the cells of their path.
+    """Return least weighted sums, from every state and from the start, rounded down step by step, and their point and path.
 
     None if a budget is used up before. States from which no path below the corner goes on have no finite sum.
     """
@@ -251,7 +286,7 @@ def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent:
     if meter.message:
         return None
     point, path = _follow(moves, costs, found, start, goal)
-    return found.cost[0], point, path
+    return found.cost[0], found.first_step(start)[0], point, path
 
 
 def _spent(

@@ -26,6 +26,7 @@ from pymoo_gridpath.exact.labels import (
     is_detour,
     load_of,
 )
+from pymoo_gridpath.exact.nearness import WHOLE
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 from pymoo_gridpath.search.heap import drop_first_of_four, push_four
 
@@ -62,7 +63,9 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     meter.n_fixed = search.n_fixed
     if not meter.message:
         search.run(meter)
-    return Front(search.paths() if meter.message else search.smoothest_paths(meter), search.points())
+    if meter.message:
+        return Front(search.paths(), search.points())
+    return Front(search.smoothest_paths(meter), search.points(), WHOLE)
 
 
 class _Search(LabelSearch):

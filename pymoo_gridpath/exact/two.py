@@ -8,9 +8,15 @@ label is dominated), with three additions that leave the result as it is:
   two-phase method).
 - Passes with a tolerance find paths near the front first, which make the staircase fine.
 - A step is skipped if the cell before led straight to its end and no cost speaks against it: the detour is dominated.
+
+Where paths near the front will do, the staircase, and what the last path found cost, are lowered by what may be missed: the
+known paths stand in for what lies no farther below them. Among labels at a cell dominance stays exact, since errors there
+would add up along the path.
 """
 
 from __future__ import annotations
+
+import dataclasses
 
 import numpy as np
 
@@ -31,7 +37,8 @@ from pymoo_gridpath.exact.labels import (
     is_detour,
     load_of,
 )
-from pymoo_gridpath.exact.supported import Hull, supported_points
+from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, lowered
+from pymoo_gridpath.exact.supported import Hull, non_dominated, supported_points
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
 
@@ -53,8 +60,8 @@ _LARGE = 2**17
 _CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
 
 
-def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter) -> Front:
-    """Return the exact front of two objectives.
+def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, allowance: Allowance | None = None) -> Front:
+    """Return the exact front of two objectives, or paths that are proven to come near to it.
 
     Of paths with the same costs it holds the one that `smoothest_paths` chooses, as long as memory lasts; any one if a cost
     depends on headings.
@@ -66,7 +73,9 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
         Of two objectives; if only one depends on headings, it comes faster as the second.
     start, goal : int
     meter : Meter
-        Ends the search when a budget is used up; the best paths found by then are returned.
+        Ends the search when a budget is used up; the best paths found by then are returned, with what is proven of them.
+    allowance : Allowance, optional
+        How far the paths may be off; by default the front is exact.
 
     References
     ----------
@@ -74,19 +83,23 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     algorithm", ICAPS 2020 (BOA*). E. L. Ulungu and J. Teghem, "The two phases method", Foundations of Computing and
     Decision Sciences 20(2), 1995.
     """
+    allowance = allowance or Allowance()
     n_weights = min(max(moves.n_cells // _CELLS_PER_WEIGHT, _LEAST_WEIGHTS), _MOST_WEIGHTS)
-    hull = supported_points(moves, costs, start, goal, n_weights, meter)
+    hull = supported_points(moves, costs, start, goal, n_weights, meter, allowance)
     known, found = hull.points, [Front(hull.paths, hull.points)]
+    proven = hull.certificate(known)
     tolerances = _TOLERANCES_ON_LARGE if hull.moves.n_cells > _LARGE else _TOLERANCES
     for tolerance in (*tolerances, 0.0):
-        if meter.message:
+        if meter.message or allowance.allows(proven):
             break
-        search = _Search(hull, known, tolerance)
+        search = _Search(hull, known, tolerance, allowance)
         search.run(meter)
         found.append(Front(search.paths(), search.points()))
-        known = _non_dominated(np.concatenate([known, found[-1].points]))
-    front = merged(found) if meter.message else Front(search.smoothest_paths(meter), search.points())
-    return Front([moves.from_grid(hull.moves.to_grid(path)) for path in front.paths], front.points)
+        known = non_dominated(np.concatenate([known, found[-1].points]))
+        proven = search.certificate(known)
+    early = meter.message or allowance.name
+    front = merged(found) if early else Front(search.smoothest_paths(meter), search.points())
+    return Front([moves.from_grid(hull.moves.to_grid(path)) for path in front.paths], front.points, proven)
 
 
 def merged(fronts: list[Front]) -> Front:
@@ -99,21 +112,15 @@ def merged(fronts: list[Front]) -> Front:
     return Front([paths[k] for k in keep], points[keep])
 
 
-def _non_dominated(points: np.ndarray) -> np.ndarray:
-    points = points[np.lexsort((points[:, 1], points[:, 0]))]
-    best_before = np.concatenate([[UNREACHABLE], np.minimum.accumulate(points[:-1, 1])])
-    return points[points[:, 1] < best_before]
-
-
 class _Search(LabelSearch):
     """One pass of the search."""
 
     pops_at_a_time = 2**18
 
-    def __init__(self, hull: Hull, known: np.ndarray, tolerance: float):
+    def __init__(self, hull: Hull, known: np.ndarray, tolerance: float, allowance: Allowance):
         moves, costs, start = hull.moves, hull.costs, hull.start
         super().__init__(moves, costs, start, hull.goal, n_keys=2, n_counts=7)
-        self.hull, self.tolerance = hull, tolerance
+        self.hull, self.tolerance, self.allowance = hull, tolerance, allowance
         n_states = hull.bounds.shape[1]
         self.states = np.empty((n_states, 5), dtype=np.int64)
         self.states[:, LEAST2] = UNREACHABLE
@@ -127,7 +134,8 @@ class _Search(LabelSearch):
             self.enter = None
         if not costs.with_heading:
             self.states[start, LEAST2] = 0
-        self.corners, self.ceilings, self.marks = _corners(hull, known)
+        self.allowed = allowance.counted(hull.begin, abs(known[-1] - known[0]))
+        self.corners, self.ceilings, self.marks = _corners(hull, known, self.allowed if allowance.name else None)
         self.counts[BEST2] = UNREACHABLE
         self.begin()
 
@@ -163,18 +171,36 @@ class _Search(LabelSearch):
             self.hull.points[0, 1],
             self.hull.points[-1, 1],
             self.tolerance,
+            self.allowed,
             max_pops,
         )
 
+    def certificate(self, known: np.ndarray) -> Certificate:
+        """Return how near the points known when it has ended, its own among them, are proven to come to the front."""
+        if self.tolerance == 0.0 and not self.counts[N_OPEN] and not self.allowance.name:
+            return WHOLE
+        proven = self.hull.certificate(known)
+        assert proven is not None
+        if self.tolerance > 0.0:
+            return proven
+        # Labels come in ascending order of the first cost: what is before that of the next has been dealt with.
+        behind = self.hull.certificate(known, int(self.heap[0, 0])) if self.counts[N_OPEN] else WHOLE
+        limits = {name: max(getattr(behind, name), getattr(self.allowance, name) or 0.0) for name in ("epsilon", "share")}
+        if self.allowance.name:
+            # What was allowed by the one may be any number by the other.
+            limits = {self.allowance.name: limits[self.allowance.name]}
+        limits = {name: min(limit, getattr(proven, name)) for name, limit in limits.items()}
+        return dataclasses.replace(proven, **limits)
 
-def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+
+def _corners(hull: Hull, known: np.ndarray, allowed: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the corners of the staircase of known points, and what labels must stay below in each gap of the hull.
 
     Returns
     -------
     corners : numpy.ndarray of int64, shape (n, 3)
         f1 and f2 that a new point stays below, and the gap that the corner lies in, ascending. A corner lies one unit beyond
-        the known points, which have to be found again.
+        the known points, which have to be found again; where points may be missed, by what is allowed below them.
     ceilings : numpy.ndarray of float, shape (n_gaps,)
         Least upper bound of the weighted sum over the corners of each gap; the kernel lowers it, and the next.
     marks : numpy.ndarray of int64, shape (n_gaps, 2)
@@ -183,7 +209,11 @@ def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
     n_gaps = len(hull.weights)
     beyond, above = (known[1:, 0], known[:-1, 1]) if len(known) > 1 else (known[:, 0], known[:, 1])
     corners = np.empty((len(beyond), 3), dtype=np.int64)
-    corners[:, 0], corners[:, 1] = beyond + 1, above + 1
+    if allowed is None:
+        corners[:, 0], corners[:, 1] = beyond + 1, above + 1
+    else:
+        corners[:, 0], corners[:, 1] = beyond, above
+        lower_corners(corners, allowed)
     corners[:, 2] = np.minimum(np.searchsorted(hull.points[1:, 0], beyond), n_gaps - 1)
     ceilings, marks = np.full(n_gaps, -1.0), np.full((n_gaps, 2), -1)
     for j in reversed(range(n_gaps)):
@@ -195,6 +225,14 @@ def _corners(hull: Hull, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
             # Known points dominate an end of this gap; those behind it may still have corners.
             marks[j, 1] = marks[j + 1, 1]
     return corners, ceilings, marks
+
+
+@kernel
+def lower_corners(corners, allowed):
+    """Lower the corners by what is allowed, see `Allowance.counted`; the gap of each stays that of the known points."""
+    for k in range(len(corners)):
+        for j in range(2):
+            corners[k, j] = lowered(corners[k, j], allowed[j, 0], allowed[j, 1], allowed[j, 2])
 
 
 @kernel
@@ -259,6 +297,7 @@ def search_two(
     most_f2,
     least_f2,
     tolerance,
+    allowed,
     max_pops,
 ):
     """Pop labels in ascending order of (f1, f2) until none is left, an array is full, or ``max_pops`` have been popped.
@@ -292,6 +331,8 @@ def search_two(
     tolerance : float
         A label must improve on the least g2 of its state by more than this share of what the second objective of the last
         path found is above ``least_f2``; 0 for the exact front.
+    allowed : int64, shape (2, 3)
+        By how much points may be missed, see `Allowance.counted`.
     max_pops : int
     """
     n, n_closed = counts[N_OPEN], counts[N_CLOSED]
@@ -337,8 +378,8 @@ def search_two(
         states[state, LEAST2] = g2
         close(closed, n_closed, load)
         if cell == goal:
-            best2 = g2
-            counts[BEST2] = g2
+            best2 = lowered(g2, allowed[1, 0], allowed[1, 1], allowed[1, 2])
+            counts[BEST2] = best2
             slack = np.int64(tolerance * (g2 - least_f2))
             found[counts[N_FOUND], 0] = n_closed
             found[counts[N_FOUND], 1] = f1

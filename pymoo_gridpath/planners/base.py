@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -59,6 +60,9 @@ class Planner(Algorithm, ABC):
         Class attribute: whether it draws no random number, so that a study needs one run of it. Default True.
     reference : bool
         Class attribute: whether a Result with ``success`` is the whole front, which others are measured against. Default False.
+    loosening : tuple of str
+        Class attribute: the arguments of its constructor by which, if one is given, it is content with less than the whole
+        front, so that it is no reference. Default none.
     turns_back : bool
         Class attribute: whether its paths may turn back along every axis, so that it refuses codings of paths that never do.
         Default False.
@@ -99,6 +103,7 @@ class Planner(Algorithm, ABC):
 
     deterministic: ClassVar[bool] = True
     reference: ClassVar[bool] = False
+    loosening: ClassVar[tuple[str, ...]] = ()
     turns_back: ClassVar[bool] = False
     goes_diagonally: ClassVar[bool] = False
     takes_operators: ClassVar[bool] = False
@@ -240,6 +245,16 @@ def settled(problem, sequences: Sequences, message: str) -> Plan:
 
 #: The planners that are known by name, see `pymoo_gridpath.registry`; spelling and the name of the class are as good.
 PLANNERS: Registry[type[Planner]] = Registry("planner", "pymoo_gridpath.planners", Planner, error=CapabilityError, key=key_of)
+
+
+def is_reference(cls: type, arguments: Mapping[str, Any]) -> bool:
+    """Whether a success of an algorithm or planner that is given some arguments is the whole front.
+
+    Its ``capability``, if it has one, says what its class does not.
+    """
+    says = getattr(cls, "capability", cls)
+    loose = any(arguments.get(name) is not None for name in getattr(says, "loosening", ()))
+    return bool(getattr(says, "reference", False)) and not loose
 
 
 def reference_planner() -> str:

@@ -13,6 +13,7 @@ from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import CapabilityError, GridError, GridPathError, GridPathWarning, counted, visible
 from pymoo_gridpath.exact import Budget, ExactResult, exact_front
+from pymoo_gridpath.exact.nearness import Allowance
 from pymoo_gridpath.fields import BoxedField
 from pymoo_gridpath.grid import Box, Cell, OccupancyGrid, check_grid
 from pymoo_gridpath.maps.queries import query_in_metres
@@ -110,7 +111,8 @@ class GridPathProblem(Problem):
     add up; or, with a warning,
     if ``max_seconds`` do not suffice: 2 by default, of wall time and without compiling, because pymoo asks for the front of its
     own accord where it prints progress (``verbose=True``). Large maps and three objectives need more. What did not suffice once
-    is not tried again; only a call with more seconds is a new attempt.
+    is not tried again; only a call with more seconds is a new attempt. With ``epsilon`` or ``share``, and only then, they may
+    return paths that are certified to be that near to the front, see `exact_front`, and raise where nothing can be certified.
 
     Besides ``F`` (N, n_obj) and ``G`` (N, 1), an evaluation sets the attributes ``turn`` (degrees) and
     ``interfering_cells`` of each individual: ``pop.get("turn")``. It draws no random number.
@@ -185,6 +187,7 @@ class GridPathProblem(Problem):
         self._front: ExactResult | None = None
         # With how many seconds there was none, and why.
         self._no_front: tuple[float, str] | None = None
+        self._fronts_near: dict[Allowance, ExactResult] = {}
         self._warned_of_operators = False
         self._prepared = [
             prepared(objective, representation, field) for objective, field in zip(self.objectives, fields, strict=True)
@@ -302,14 +305,21 @@ class GridPathProblem(Problem):
     # -- the exact front ----------------------------------------------------------------------------------------------
 
     def pareto_front(self, *args, **kwargs):
-        """Return the exact front, shape (N, n_obj), or None, see Notes; ``max_seconds`` (default 2) may be given."""
+        """Return the exact front, shape (N, n_obj), or None, see Notes.
+
+        ``max_seconds`` (default 2) may be given, and ``epsilon`` or ``share`` where a front that is near to it will do.
+        """
         return self._unless_none("pareto_front", *args, **kwargs)
 
     def pareto_set(self, *args, **kwargs):
         """Return a path for each point of the exact front, shape (N, n_var), or None, as `pareto_front`."""
         return self._unless_none("pareto_set", *args, **kwargs)
 
-    def _unless_none(self, name: str, *args, **kwargs):
+    def _unless_none(self, name: str, *args, epsilon: float | None = None, share: float | None = None, **kwargs):
+        allowance = Allowance(epsilon, share)
+        if allowance.name:
+            near = self._near(allowance, *args, **kwargs)
+            return None if near is None else {"pareto_front": near.F, "pareto_set": near.X}[name]
         found = getattr(super(), name)(*args, **kwargs)
         if found is None:
             # pymoo would keep that, however much more time the next call gives.
@@ -342,6 +352,18 @@ class GridPathProblem(Problem):
         if self._front is None and self._no_front is not None:
             warnings.warn(f"no Pareto front: {self._no_front[1]}", GridPathWarning, stacklevel=7)
         return self._front
+
+    def _near(self, allowance: Allowance, max_seconds: float | None = PARETO_SECONDS) -> ExactResult | None:
+        """Return a front that is near enough to the exact one, kept for the next call, or None if the time is too short."""
+        budget = Budget(max_seconds=max_seconds)
+        found = self._front or self._fronts_near.get(allowance)
+        if found is None:
+            found = exact_front(self, budget, epsilon=allowance.epsilon, share=allowance.share)
+            if not found.success:
+                warnings.warn(f"no Pareto front: the search {found.message}", GridPathWarning, stacklevel=4)
+                return None
+            self._fronts_near[allowance] = found
+        return found
 
     # -- measures -----------------------------------------------------------------------------------------------------
 

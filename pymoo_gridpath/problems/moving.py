@@ -189,6 +189,9 @@ class MovingObstaclesProblem(GridPathProblem, _Clocked):
     def _exact(self, max_seconds: float | None):
         return self.still._exact(max_seconds)
 
+    def _near(self, *args, **kwargs):
+        return self.still._near(*args, **kwargs)
+
     def _evaluate(self, x, out, *args, **kwargs):
         super()._evaluate(x, out, *args, **kwargs)
         out["epoch"] = np.full(len(x), self.epoch)

@@ -168,8 +168,8 @@ class Backward:
             if done or (stop is not None and stop()):
                 break
 
-    def first_heading(self, cell: int) -> int:
-        """Return the heading of the first step of the cheapest path that begins in a cell, -1 if there is none."""
+    def first_step(self, cell: int) -> tuple[int, int]:
+        """Return the first cost of the cheapest path that begins in a cell, and the heading of its first step, -1 for none."""
         best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights if self._fused else None
         steps, legal, offsets = self.step[:, 8].tolist(), int(self.moves.legal[cell]), self.moves.offsets.tolist()
         for m in range(8):
@@ -186,7 +186,7 @@ class Backward:
                     one, two = one + entered[0], two + entered[1]
             if (one, two) < best:
                 best, first = (one, two), m
-        return first
+        return best[0], first
 
 
 def _sums(costs: np.ndarray, weights: tuple[float, float]) -> np.ndarray:

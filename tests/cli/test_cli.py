@@ -150,6 +150,14 @@ def test_steps_are_an_option_of_maps(tmp_path, free_map, capsys, options, steps,
     assert words in capsys.readouterr().out
 
 
+def test_a_plan_may_be_content_with_a_front_that_is_near(tmp_path, capsys):
+    assert main(["plan", "paper16", "--algorithm", "exact", "--epsilon", "5%", "-o", str(tmp_path)]) == 0
+    assert "% of the front\n" in capsys.readouterr().out
+    run = json.loads((tmp_path / "paths.json").read_text())["settings"]["runs"][0]
+    assert run["complete"] is False and run["allowance"] == {"epsilon": 0.05}
+    assert 0.0 < run["certified"]["epsilon"] <= 0.05 and run["message"].endswith("% of the front")
+
+
 @pytest.mark.parametrize(
     ("options", "stated"),
     [
@@ -266,6 +274,12 @@ def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "exakt"], "did you mean 'exact'"),
         (["plan", "paper16", "--algorithm", "exact", "--generations", "5"], "--generations is not for --algorithm exact"),
         (["plan", "paper16", "--algorithm", "exact", "--pop-size", "5"], "--pop-size is not for --algorithm exact"),
+        (["plan", "paper16", "--algorithm", "nsga2", "--epsilon", "2%"], "--epsilon is not for --algorithm nsga2"),
+        (
+            ["plan", "paper16", "--algorithm", "exact", "--share", "2x"],
+            "not a number above 0, at most 1, or per cent such as 2%",
+        ),
+        (["plan", "paper16", "--algorithm", "exact", "--epsilon", "2%", "--share", "0.1"], "not allowed with argument"),
         (["plan", "paper16", "--algorithm", "exact", "--runs", "2"], "--runs is not for --algorithm exact"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--algorithm", "MOPSO_CD"], "MOPSO_CD"),
         (["plan", "MAP", "--start", "0,0", "--goal", "5,3", "--representation", "real"], "there is no representation 'real'"),

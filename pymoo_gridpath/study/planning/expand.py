@@ -88,7 +88,7 @@ def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> Plan
     if spec.preset is not None:
         content: dict[str, Any] = {"preset": spec.preset, "pop_size": spec.pop_size or POP_SIZE}
     elif spec.is_made:
-        flags = flags_of(own.read(spec.algorithm["class"], ALGORITHM, ("algorithm",)).cls)
+        flags = flags_of(own.read(spec.algorithm["class"], ALGORITHM, ("algorithm",)).cls, spec.algorithm)
         content = {"algorithm": made.entry_of(spec.algorithm, ALGORITHM, made=True, **flags)}
     elif (planner := planner_of(spec.algorithm)) is not None:
         budget = {key: getattr(spec, key) for key in own_budget(planner)}
@@ -102,7 +102,7 @@ def _algorithm(spec: AlgorithmSpec, reference: Mapping[str, Any] | None) -> Plan
         if spec.parameters:
             content["parameters"] = spec.parameters
     elif own.is_path(spec.algorithm):
-        entry = algorithm_entry(spec.algorithm)
+        entry = algorithm_entry(spec.algorithm, spec.parameters)
         content = {"algorithm": entry, "parameters": spec.parameters}
         if entry["pop_size"]:
             content["pop_size"] = spec.pop_size or DEFAULT_POP_SIZE

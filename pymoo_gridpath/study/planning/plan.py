@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from pymoo_gridpath.algorithms import CAPABILITIES
 from pymoo_gridpath.memory import needed
+from pymoo_gridpath.planners.base import is_reference
 from pymoo_gridpath.study.planning.canonical import n_cells, resolve
 from pymoo_gridpath.study.planning.moving import budget_of
 from pymoo_gridpath.study.planning.stored import check_plan
@@ -205,6 +206,9 @@ def is_deterministic(algorithm: Mapping[str, Any]) -> bool:
 
 def is_truth(algorithm: Mapping[str, Any]) -> bool:
     """Whether a complete result of a canonical algorithm is what others are measured against."""
+    planner = planner_of(algorithm.get("algorithm"))
+    if planner is not None:
+        return is_reference(planner, algorithm.get("parameters", {}))
     return _says(algorithm, "reference")
 
 
@@ -244,5 +248,9 @@ def needed_for(task: Task) -> str:
     turn = "turn" in map(objective_name, problem["objectives"])
     representation = problem["representation"]
     return needed(
-        own.shown(representation), is_monotone(representation), n_cells(problem["grid"]), is_truth(task.algorithm), turn
+        own.shown(representation),
+        is_monotone(representation),
+        n_cells(problem["grid"]),
+        _says(task.algorithm, "reference"),
+        turn,
     )

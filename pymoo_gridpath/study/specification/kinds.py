@@ -11,6 +11,7 @@ from pymoo_gridpath.algorithms import find_algorithm
 from pymoo_gridpath.objectives import OBJECTIVES, Objective
 from pymoo_gridpath.operators.sets import MEMBERS
 from pymoo_gridpath.planners import PLANNERS, Planner
+from pymoo_gridpath.planners.base import is_reference
 from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations import REPRESENTATIONS, Representation
@@ -94,21 +95,21 @@ def takes_pop_size(cls: type) -> bool:
     return "pop_size" in parameters_of(cls) and find_algorithm(cls).takes_pop_size
 
 
-def algorithm_entry(path: str) -> dict[str, Any]:
-    """Return an algorithm of one's own in canonical form.
+def algorithm_entry(path: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an algorithm of one's own, that is given some arguments, in canonical form.
 
     Its class attributes ``deterministic`` and ``reference``, or those of its ``capability``, say whether one run of it is
     enough, and whether that is the truth which others are measured against.
     """
     given = own.read(path, ALGORITHM, ("algorithm",))
-    facts = flags_of(given.cls)
+    facts = flags_of(given.cls, arguments)
     if issubclass(given.cls, Planner):
         # Of others it is not said, as their keys were made without.
         facts["planner"] = True
     return own.entry(given, slots=operator_slots(given.cls), pop_size=takes_pop_size(given.cls), **facts)
 
 
-def flags_of(cls: type) -> dict[str, bool]:
+def flags_of(cls: type, arguments: Mapping[str, Any]) -> dict[str, bool]:
     """Return what an algorithm of one's own says of itself: whether it draws nothing, and whether it is the truth."""
     says = getattr(cls, "capability", cls)
-    return {flag: bool(getattr(says, flag, False)) for flag in ("deterministic", "reference")}
+    return {"deterministic": bool(getattr(says, "deterministic", False)), "reference": is_reference(cls, arguments)}

@@ -14,12 +14,14 @@ from pymoo.optimize import minimize
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import ExactFront, ahmed_deb_2013, make_algorithm
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.operators import DiscreteSBX, PathMutation, SpliceCrossover, paper_operators, path_operators
 from pymoo_gridpath.problems import random_dense_grid
 from pymoo_gridpath.study.planning import build, trial
 from pymoo_gridpath.study.planning.build import build_algorithm, build_grid, build_problem, build_termination, pack_grid
 from pymoo_gridpath.study.planning.expand import plan_study
+from pymoo_gridpath.study.planning.plan import is_truth
+from pymoo_gridpath.study.specification.kinds import flags_of
 from pymoo_gridpath.study.specification.problem import ProblemSpec
 from pymoo_gridpath.study.specification.study import Study
 from pymoo_gridpath.testing.enumeration import RULES
@@ -243,6 +245,27 @@ def test_exact():
     assert isinstance(algorithm, ExactFront)
     assert (algorithm.budget.max_seconds, algorithm.budget.max_labels) == (9, 10_000)
     assert (problem.pareto_front(max_seconds=60) == minimize(problem, algorithm).F).all()
+
+
+def test_an_exact_front_that_may_be_near_enough_is_a_run_like_others():
+    entry = {"algorithm": "exact", "max_seconds": 60, "parameters": {"epsilon": 0.05}}
+    task = task_of(RANDOM, entry)
+    assert not is_truth(task.algorithm) and is_truth(task_of(RANDOM, {"algorithm": "exact"}).algorithm)
+    problem = build_problem(task.problem)
+    result = minimize(problem, build_algorithm(task.algorithm, problem))
+    assert result.success and result.certified.epsilon <= 0.05
+    made = task_of(RANDOM, {"algorithm": ExactFront(max_seconds=60, epsilon=0.05)})
+    assert made.algorithm == task.algorithm and made.key == task.key
+    with pytest.raises(StudyError, match="epsilon is 2, expected a number above 0, at most 1"):
+        task_of(RANDOM, {"algorithm": "exact", "parameters": {"epsilon": 2.0}})
+
+
+def test_a_planner_of_ones_own_that_was_content_with_less_is_no_truth():
+    class Mine(ExactFront):
+        pass
+
+    assert flags_of(Mine, {}) == {"deterministic": True, "reference": True}
+    assert not flags_of(Mine, {"share": 0.1})["reference"] and flags_of(Mine, {"share": None})["reference"]
 
 
 def test_each_algorithm_is_new():

@@ -74,6 +74,16 @@ def test_an_exact_front_among_the_algorithms_serves_where_no_other_is_wanted(tmp
     assert "No exact front is at hand for 1 of 2 problems" in texts(tmp_path / "report")[0]
 
 
+def test_a_front_that_is_near_enough_does_not_serve(tmp_path):
+    plan = made.make_plan({"g": 1}, ["a", "exact"], n_seeds=3, reference=False)
+    store = made.fill(tmp_path, plan, n_records=6, n_points=6)
+    run = next(run for run in plan.runs if run.algorithm == 1)
+    record = store.read(run.key)
+    near = record.algorithm | {"parameters": {"epsilon": 0.02}}
+    store.write(run.key, to_bytes(type(record)(**{**vars(record), "algorithm": near})))
+    assert not collect(store).references[0].front.exact
+
+
 def test_an_exact_front_of_an_overridden_problem_does_not_serve(tmp_path):
     plan = made.make_plan({"g": 1}, ["a", "exact"], n_seeds=3, reference=False)
     store = made.fill(tmp_path, plan, n_records=6, n_points=6)
