@@ -21,6 +21,8 @@ _RESERVED = frozenset(vars(Individual()))
 
 ABSENT = object()
 
+_AT_A_TIME = 64
+
 
 class LightIndividual(Individual):
     """A pymoo individual that shares what a constructor would set to the same for all: empty values until they are set."""
@@ -118,7 +120,7 @@ class Table:
         self.n, self.columns, self.evaluated = n, columns, evaluated
         self.n_left = 0
         self._config = default_config()
-        self._dead: list[weakref.ref] = []
+        self._dead: list[Individual] = []
 
     def individuals(self) -> list[TableIndividual]:
         """Return new individuals, one a row."""
@@ -180,14 +182,17 @@ class Table:
 
     def bury(self, individuals: Iterable[Individual]) -> None:
         """Note who has not survived, see `forget`."""
-        self._dead += map(weakref.ref, individuals)
+        self._dead += individuals
 
     def forget(self) -> None:
         """Make ordinary individuals of those who have not survived but are kept by somebody, who is to keep no whole table."""
-        for one in [one for reference in self._dead if (one := reference()) is not None]:
-            if type(one) is TableIndividual:
-                one.become_ordinary()
-        self._dead = []
+        while self._dead:
+            # Few at a time: many new objects call Python's garbage collector, which would take a tenth of a run.
+            references = list(map(weakref.ref, self._dead[-_AT_A_TIME:]))
+            del self._dead[-_AT_A_TIME:]
+            for one in [one for reference in references if (one := reference()) is not None]:
+                if type(one) is TableIndividual:
+                    one.become_ordinary()
 
 
 def is_data(key: str) -> bool:
