@@ -18,9 +18,10 @@ from pymoo_gridpath.operators.individual_table import (
     is_data,
     joined,
     joined_as_objects,
+    row_of,
+    table_of,
 )
 
-_TABLE, _ROW = attrgetter("_table"), attrgetter("_row")
 _WHOLE = slice(None)
 
 
@@ -84,9 +85,9 @@ class ArrayPopulation(Population):
         if all(column is not None for column in columns.values()):
             if self._set_columns(_WHOLE, columns):
                 return self
-            inside = np.array([type(one) is TableIndividual for one in individuals])
-            if inside.any() and not inside.all() and self[inside]._set_columns(inside, columns):
-                chosen = np.flatnonzero(~inside).tolist()
+            inside, places = self._in_tables(individuals)
+            if inside._set_columns(places, columns):
+                chosen = np.flatnonzero(~places).tolist()
         for key, values in given.items():
             _write(individuals, key, _one_each(values, len(individuals)), chosen)
         return self
@@ -123,7 +124,8 @@ class ArrayPopulation(Population):
             return None
         n, places, columns = len(individuals), [part.places for part in parts], {}
         for key in dict.fromkeys(key for table in tables for key in table.columns if key not in without):
-            found = [table.column(key) for table in tables]
+            # As they are kept: constraint violations are worked out only when somebody asks.
+            found = [table.columns.get(key) for table in tables]
             taken = [None if one is None else one[part.rows] for one, part in zip(found, parts, strict=True)]
             column = joined(n, taken, places)
             column = joined_as_objects(key, n, taken, places) if column is None else column
@@ -160,7 +162,7 @@ class ArrayPopulation(Population):
         survivors = self.tolist()
         inside, parts = self, self._parts(survivors)
         if any(part.table is None for part in parts):
-            inside = self[np.array([type(one) is TableIndividual for one in survivors])]
+            inside, _ = self._in_tables(survivors)
             parts = inside._parts(inside.tolist())
         if not parts:
             return self
@@ -174,6 +176,11 @@ class ArrayPopulation(Population):
             table.forget()
             table.bury(set(members.tolist()) - set(survivors))
         return self
+
+    def _in_tables(self, individuals: list) -> tuple[ArrayPopulation, np.ndarray]:
+        """Return those in tables, and which they are, bool."""
+        places = np.array([type(one) is TableIndividual for one in individuals], dtype=bool)
+        return self[places].view(ArrayPopulation), places
 
     def _array(self, individuals: list, key: str) -> np.ndarray:
         """Return the values of a key."""
@@ -208,7 +215,8 @@ class ArrayPopulation(Population):
         if found is not None and found[0] == individuals and [_n_left(part.table) for part in found[1]] == found[2]:
             return found[1]
         try:
-            tables, rows = list(map(_TABLE, individuals)), np.fromiter(map(_ROW, individuals), dtype=int, count=len(individuals))
+            tables = list(map(table_of, individuals))
+            rows = np.fromiter(map(row_of, individuals), dtype=int, count=len(individuals))
         except AttributeError:
             tables = [one._table if type(one) is TableIndividual else None for one in individuals]
             rows = np.array([one._row if type(one) is TableIndividual else 0 for one in individuals], dtype=int)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import repeat
 from operator import attrgetter
 from typing import Any
@@ -19,8 +19,10 @@ _EMPTY.flags.writeable = False
 _PROPERTIES = ("X", "F", "G", "H", "dF", "dG", "dH", "ddF", "ddG", "ddH", "CV")
 _RESERVED = frozenset(vars(Individual()))
 
+# Where a table of objects has no value.
 ABSENT = object()
 
+# Weak references that are made at a time.
 _AT_A_TIME = 64
 
 
@@ -88,11 +90,12 @@ class TableIndividual(Individual):
         table.n_left += 1
         object.__setattr__(self, "__class__", LightIndividual)
         vars(self).update(table.row(row))
-        del self._table
+        del self._table, self._row
         return self  # pyright: ignore
 
 
-_TABLE = attrgetter("_table")
+# What reads and sets them without asking the individual.
+table_of, row_of = attrgetter("_table"), attrgetter("_row")
 _set_table, _set_row = TableIndividual._table.__set__, TableIndividual._row.__set__  # pyright: ignore
 
 
@@ -130,7 +133,7 @@ class Table:
 
     def take(self, individuals: list[TableIndividual]) -> None:
         """Have individuals of other tables, one a row; who is there twice has the last."""
-        for table in set(map(_TABLE, individuals)):
+        for table in set(map(table_of, individuals)):
             table.n_left += 1
             self._dead += table._dead
             table._dead = []
@@ -213,7 +216,7 @@ def column_of(key: str, values, n: int) -> np.ndarray | None:
     return column
 
 
-def joined(n: int, columns: list[np.ndarray | list], places: list) -> np.ndarray | None:
+def joined(n: int, columns: Sequence[np.ndarray | list | None], places: list) -> np.ndarray | None:
     """Return n values from where they stand in arrays, if those are of the same type and shape, else None."""
     first = columns[0]
     for column in columns:
