@@ -351,6 +351,10 @@ def _search(w: World) -> dict[str, Call]:
         "share_found": (quality.share_found, {"F": front, "front": front}),
         "Budget": (exact.Budget, {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False}),
         "exact_front": (exact.exact_front, {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0)}),
+        "exact_fronts": (
+            exact.exact_fronts,
+            {"problems": [w.problem], "budget": exact.Budget(max_seconds=2.0), "executor": None},
+        ),
         "exact_timed_front": (
             exact.exact_timed_front,
             {
