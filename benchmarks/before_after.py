@@ -137,7 +137,7 @@ def map_workloads(folder: Path) -> Iterator[tuple[str, Callable[[], Callable[[],
         yield f"exact, {name}", fronts(maps[name], some, paper)
     for name, occupied in drawn_maps().items():
         grid = OccupancyGrid(occupied)
-        yield f"exact, {name}", fronts(grid, [far_ends(grid)], paper)
+        yield f"exact, {name}", fronts(grid, [half_way(grid)], paper)
     yield f"exact, {wide}, longest", fronts(maps[wide], [longest[wide]], paper)
     for name in (lak, "random-64-64-20"):
         yield f"exact, three objectives, {name}", fronts(maps[name], [half[name]], [*paper, Turn()])
@@ -181,12 +181,15 @@ def maze(n: int, corridor: int, draw: np.random.Generator) -> np.ndarray:
     return occupied
 
 
-def far_ends(grid):
-    """Return two cells of the largest region that lie far apart, in opposite corners."""
+def half_way(grid):
+    """Return a cell at a corner of the largest region, and one half as far from it as the farthest."""
     regions = grid.regions
     y, x = np.nonzero(regions == np.bincount(regions[regions > 0]).argmax())
-    first, last = np.argmin(x + y), np.argmax(x + y)
-    return (int(x[first]), int(y[first])), (int(x[last]), int(y[last]))
+    k = np.argmin(x + y)
+    start = int(x[k]), int(y[k])
+    length = grid.shortest_lengths(start)[y, x]
+    k = np.argmin(np.abs(length - length.max() / 2))
+    return start, (int(x[k]), int(y[k]))
 
 
 def serve(maps: Path | None) -> None:

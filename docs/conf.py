@@ -60,6 +60,8 @@ html_copy_source = False
 PLAIN_PAGES = (
     "index",
     "tutorial",
+    "robot",
+    "own_cost",
     "method",
     "algorithms",
     "exact",

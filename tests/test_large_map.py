@@ -120,7 +120,7 @@ def test_the_figure_shows_the_room_at_its_place():
     _, large = pair()
     problem = GridPathProblem(large, moved(START), moved(GOAL), "cells")
     trade_off = TradeOffSet.from_genes(problem, exact_front(problem).X)
-    ax = plot_paths(trade_off)
+    ax = plot_paths(trade_off, units="cells")
     box = problem.representation.box
     assert (ax.get_xlim(), ax.get_ylim()) == ((box.x0 - 0.5, box.x1 - 0.5), (box.y0 - 0.5, box.y1 - 0.5))
     assert ax.get_images()[0].get_array().shape[:2] == box.shape

@@ -46,7 +46,7 @@ _ROUNDING = 1e-12
 
 # The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
 # They ask the less the later they come; several pay only on large grids.
-_TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.03, 0.01, 0.004, 0.0015)
+_TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.02, 0.006, 0.002)
 _LARGE = 2**17
 
 # Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.

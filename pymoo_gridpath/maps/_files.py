@@ -29,13 +29,13 @@ BLOCK = 1 << 22
 """How many letters or values are looked at together, which bounds the memory that this takes."""
 
 
-def require_file(path: str | os.PathLike[str]) -> Path:
-    """Return the path if it names a file, else raise MapError."""
+def require_file(path: str | os.PathLike[str], expected: str = "a map file") -> Path:
+    """Return the path if it names a file, else raise MapError that says what was expected."""
     checks.file_path("path", path)
     if os.path.isfile(path):
         return Path(path)
     found = "found a directory" if os.path.isdir(path) else "no such file"
-    raise MapError(path, f"{found}, expected a map file")
+    raise MapError(path, f"{found}, expected {expected}")
 
 
 def read_text_bytes(path: str | os.PathLike[str], limit: int | None = None) -> bytes:

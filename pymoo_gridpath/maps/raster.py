@@ -36,7 +36,7 @@ def read_raster(path: str | os.PathLike[str]) -> np.ndarray:
         the extra ``geo``.
     """
     try:
-        with open(require_file(path), "rb") as file:
+        with open(require_file(path, "a file of one number a cell"), "rb") as file:
             head = file.read(len(MAGIC))
     except OSError as error:
         raise MapError(path, f"the file cannot be read ({error.strerror}), expected an array or an image") from None

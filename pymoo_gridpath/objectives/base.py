@@ -79,6 +79,8 @@ class Objective(ABC):
     in_cells : bool
         Whether its values are lengths in cells, which tables, figures and pages give in metres of a map that states its
         resolution. Its label says ``[cells]`` then.
+    files : tuple of str
+        Arguments that may be the name of a file: runs of a study are known by what it holds, and not by its name alone.
 
     Examples
     --------
@@ -120,6 +122,7 @@ class Objective(ABC):
     penalty_unit: float = 1.0
     local: bool = False
     in_cells: bool = False
+    files: tuple[str, ...] = ()
 
     def on(self, grid: OccupancyGrid) -> Objective:
         """Return the objective with everything written out that a map decides where it is not given; itself if that is nothing.

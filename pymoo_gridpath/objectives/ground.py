@@ -78,6 +78,7 @@ class GroundCost(_OfRaster):
     name = "ground"
     label = "Cost of the ground"
     best = "cheapest"
+    files = ("cost",)
 
     def __init__(
         self,
@@ -149,6 +150,7 @@ class Climb(_OfRaster):
     name = "climb"
     label = "Climb [m]"
     best = "flattest"
+    files = ("elevation",)
 
     def __init__(self, elevation: ArrayLike | str | os.PathLike[str], name: str = "climb", label: str | None = None):
         self.elevation = _raster("elevation", elevation)

@@ -154,25 +154,28 @@ def widen_limits(ax: Axes) -> None:
             formatter.set_useOffset(False)
 
 
-class _Itself(ScalarFormatter):
-    """Labels of the values of which an axis holds the negative."""
+class _Scaled(ScalarFormatter):
+    """Labels of the values of an axis times a factor."""
 
-    def __init__(self):
+    def __init__(self, factor: float):
         super().__init__(useOffset=False)
+        self.factor = factor
 
     def set_locs(self, locs):
-        super().set_locs([0.0 - value for value in locs])
+        super().set_locs([0.0 + self.factor * value for value in locs])
 
     def __call__(self, x, pos=None):
-        return super().__call__(0.0 - x, pos)
+        return super().__call__(0.0 + self.factor * x, pos)
 
 
-def label_axis(axis, label: str, maximise: bool) -> str:
-    """Return what to write beside an axis; of what is maximised it holds the negative, and its ticks say the value itself."""
-    if not maximise:
-        return label
-    axis.set_major_formatter(_Itself())
-    return f"{label}, more is better"
+def label_axis(axis, label: str, maximise: bool, factor: float = 1.0) -> str:
+    """Return what to write beside an axis, and have its ticks say its values times a factor.
+
+    Of what is maximised it holds the negative, and its ticks say the value itself.
+    """
+    if maximise or factor != 1.0:
+        axis.set_major_formatter(_Scaled(-factor if maximise else factor))
+    return f"{label}, more is better" if maximise else label
 
 
 def check_units(units: Units | None, grid: OccupancyGrid) -> Units:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -133,11 +134,9 @@ class Backward:
             return 0, 0
         for costs in (self.field, self.enter):
             if costs is not None and self.weights is None:
-                most += int(costs[0].max(initial=0))
+                most += int(costs[0].max())
             elif costs is not None and self.weights is not None:
-                most += sum(
-                    int(weight * int(part.max(initial=0))) + 1 for weight, part in zip(self.weights, costs, strict=True)
-                )
+                most += sum(int(weight * int(part.max())) + 1 for weight, part in zip(self.weights, costs, strict=True))
         width = 1 << (least.bit_length() - 1)
         n_lists = 1 << (most // width + 2).bit_length()
         return (width, n_lists) if n_lists <= _MOST_LISTS else (0, 0)
@@ -172,16 +171,21 @@ class Backward:
     def first_heading(self, cell: int) -> int:
         """Return the heading of the first step of the cheapest path that begins in a cell, -1 if there is none."""
         best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights if self._fused else None
+        steps, legal, offsets = self.step[:, 8].tolist(), int(self.moves.legal[cell]), self.moves.offsets.tolist()
         for m in range(8):
-            if not self.moves.legal[cell] >> m & 1:
+            if not legal >> m & 1:
                 continue
-            after = cell + int(self.moves.offsets[m])
-            total = self.step[:, 8, m] + self.cost[:, 8 * after + m if self.with_heading else after]
+            after = cell + offsets[m]
+            one, two = self.cost[:, 8 * after + m if self.with_heading else after].tolist()
+            one, two = one + steps[0][m], two + steps[1][m]
             for costs in (self.field[:, after], None if self.enter is None else self.enter[:, after, m]):
                 if costs is not None:
-                    total = total + (costs if weights is None else _sums(costs, weights))
-            if tuple(total.tolist()) < best:
-                best, first = tuple(total.tolist()), m
+                    entered = costs.tolist()
+                    if weights is not None:
+                        entered = math.floor(weights[0] * entered[0] + weights[1] * entered[1]), entered[0]
+                    one, two = one + entered[0], two + entered[1]
+            if (one, two) < best:
+                best, first = (one, two), m
         return first
 
 

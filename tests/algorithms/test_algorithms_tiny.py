@@ -15,8 +15,8 @@ from pymoo_gridpath.errors import CapabilityError
 @pytest.mark.parametrize("name", CAPABILITIES)
 def test_every_algorithm_ends_on_tiny_maps(name):
     row = CAPABILITIES[name]
-    for width, height in ((3, 3), (4, 1), (2, 5), (4, 4)):
-        for obstacles in ("penalty", "constraint"):
+    for obstacles, sizes in (("penalty", ((3, 3), (4, 1))), ("constraint", ((2, 5), (4, 4)))):
+        for width, height in sizes:
             objectives = ("length",) if name == "GA" else ("length", "vulnerability")
             occupied = np.zeros((height, width), dtype=bool)
             problem = GridPathProblem(

@@ -56,7 +56,7 @@ def test_transparent_pixels_have_no_data(tmp_path):
         (lambda file: file.write_text("1 2 3\n"), "no image can be recognised"),
         (lambda file: np.save(file.open("wb"), np.zeros((2, 2, 2))), "the array has 3 dimensions, expected 2"),
         (lambda file: np.save(file.open("wb"), np.array([["a"]])), "expected numbers"),
-        (lambda file: None, "no such file"),
+        (lambda file: None, "no such file, expected a file of one number a cell"),
         (lambda file: file.mkdir(), "found a directory"),
     ],
 )

@@ -26,6 +26,7 @@ from pymoo_gridpath.planners import ExactFront
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
 from pymoo_gridpath.representations import CellSequence, IntegerRepresentation
 from pymoo_gridpath.study import LocalProcesses, Store, Study, load_study, plan_study, run_study, write_report
+from pymoo_gridpath.study.planning import build
 from pymoo_gridpath.study.planning.build import build_algorithm, build_problem
 from pymoo_gridpath.study.running.record import from_bytes
 from pymoo_gridpath.study.specification.own import code_of
@@ -461,3 +462,30 @@ def test_a_plan_that_was_changed_makes_nobody_import(hikers, tmp_path, place, va
         store.read_plan()
     assert message in str(error.value)
     assert "hikers" not in sys.modules
+
+
+def test_runs_are_known_by_what_a_file_of_costs_holds(tmp_path):
+    np.save(tmp_path / "mud.npy", np.ones((8, 8)))
+    mud = {"class": "ground", "cost": str(tmp_path / "mud.npy"), "weight": 2.0}
+    setup = {
+        "problems": [{"random": {"size": 8, "p0": 0.1}, "representation": "cells", "objectives": ["length", mud]}],
+        "algorithms": [{"algorithm": "NSGA2", "pop_size": 10}],
+        "seeds": 1,
+        "budget": {"generations": 2},
+        "reference": False,
+    }
+    plan = plan_study(Study.from_dict(setup))
+    store = Store(tmp_path / "store")
+    assert run_study(plan, store.folder).n_failed == 0
+    again = plan_study(Study.from_dict(setup))
+    assert [run.key for run in again.runs] == [run.key for run in plan.runs]
+    np.save(tmp_path / "mud.npy", np.eye(8))
+    other = plan_study(Study.from_dict(setup))
+    assert {run.key for run in other.runs}.isdisjoint(run.key for run in plan.runs)
+    # A plan that was made before does not run on other costs under its own keys, in a process that has not read those.
+    build._problems.clear()
+    outcome = run_study(plan, tmp_path / "late")
+    assert outcome.n_failed == 1 and "mud.npy is not what the study was planned with" in outcome.messages[0]
+    (tmp_path / "mud.npy").unlink()
+    with pytest.raises(GridPathError, match=r"mud\.npy"):
+        plan_study(Study.from_dict(setup))

@@ -145,7 +145,8 @@ def _own_objectives(given: Any, where: Where) -> list[Any]:
         raise StudyError(f"objectives is {values.show(given)}, expected a list of names", where)
     for one in given:
         if isinstance(one, Mapping):
-            own.check_entry(one, "objective", where, name=str, label=str, **({"maximise": bool} if "maximise" in one else {}))
+            more = {key: kind for key, kind in (("maximise", bool), ("files", dict)) if key in one}
+            own.check_entry(one, "objective", where, name=str, label=str, **more)
         elif isinstance(one, str) and one not in of_package(Objective):
             raise StudyError(f"there is no objective {values.show(one)}; {nearest(one, of_package(Objective))}", where)
     names = [one for one in given if not isinstance(one, Mapping)]

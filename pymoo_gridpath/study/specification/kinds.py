@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pymoo.core.algorithm import Algorithm
@@ -27,7 +28,9 @@ def objective_entry(form: Any) -> Any:
     """Return an objective of a study in canonical form; one that has a name in this package alone keeps that."""
     given = own.read(form, OBJECTIVE, ("objectives",))
     made = given.cls(**given.arguments)
-    content = own.entry(given, label=made.label, **({"maximise": True} if made.maximise else {}))
+    facts = {"maximise": True} if made.maximise else {}
+    files = {key: own.digest_of(given.arguments[key]) for key in given.cls.files if isinstance(given.arguments.get(key), str)}
+    content = own.entry(given, label=made.label, **facts, **({"files": files} if files else {}))
     return content if isinstance(content, str) else {**content, "name": made.name}
 
 
@@ -39,6 +42,12 @@ def objective_name(content: Any) -> str:
 def objective_label(content: Any) -> str:
     """Return how figures call an objective in canonical form, with its unit."""
     return of_package(Objective)[content].label if isinstance(content, str) else content["label"]
+
+
+def objective_axis(content: Any, grid: Mapping[str, Any]) -> tuple[str, float]:
+    """Return what an axis says of an objective on a grid, both in canonical form, and the factor of its values there."""
+    label, resolution = objective_label(content), grid.get("resolution")
+    return (label, 1.0) if resolution is None else (label.replace("[cells]", "[m]"), resolution if "[cells]" in label else 1.0)
 
 
 def is_maximised(content: Any) -> bool:

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from pymoo.core.variable import Variable
 
-from pymoo_gridpath.errors import GridPathError, StudyError, nearest
+from pymoo_gridpath.errors import GridPathError, StudyError, nearest, visible
 from pymoo_gridpath.planners.signature import parameters_of
 from pymoo_gridpath.representations import Representation
 from pymoo_gridpath.study.specification import values
@@ -163,9 +163,33 @@ def class_of(content: Any, kind: Kind) -> type:
 
 
 def make(content: Any, kind: Kind, *positional: Any, **options: Any) -> Any:
-    """Return a new object of something in canonical form."""
-    arguments = {} if isinstance(content, str) else content["arguments"]
+    """Return a new object of something in canonical form.
+
+    Raises
+    ------
+    GridPathError
+        If its class cannot be had here, or a file that it is made of is not what the study was planned with.
+    """
+    arguments, files = ({}, {}) if isinstance(content, str) else (content["arguments"], content.get("files", {}))
+    for key, digest in files.items():
+        name = arguments.get(key)
+        if not isinstance(name, str) or digest_of(name) != digest:
+            raise GridPathError(f"{visible(name)} is not what the study was planned with, expected the same {kind.word} {key}")
     return class_of(content, kind)(*positional, **options, **arguments)
+
+
+def digest_of(file: str) -> str:
+    """Return the SHA-256 of a file, in hexadecimal.
+
+    Raises
+    ------
+    GridPathError
+        If it cannot be read.
+    """
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except OSError as error:
+        raise GridPathError(f"{visible(file)} cannot be read: {error.strerror or error}") from None
 
 
 @functools.cache

@@ -173,14 +173,14 @@ def test_every_run_ends_where_there_are_but_few_paths(size, monkeypatch):
     """Some algorithms would make generations without new paths for ever."""
     monkeypatch.setattr("pymoo_gridpath.study.running.execute._LONGEST", (1, 2))
     algorithms = [
-        {"algorithm": row.name, "pop_size": 20} | ({"parameters": {"ref_points": POINTS}} if row.needs == "ref_points" else {})
+        {"algorithm": row.name, "pop_size": 10} | ({"parameters": {"ref_points": POINTS}} if row.needs == "ref_points" else {})
         for row in USABLE
         if row.max_objectives is None
     ]
     problem = {"random": {"size": size, "p0": 1.0}, "representation": "cells"}
     plan = plan_study(
         Study.from_dict(
-            {"problems": [problem], "algorithms": algorithms, "seeds": 1, "budget": {"evaluations": 80}, "reference": False}
+            {"problems": [problem], "algorithms": algorithms, "seeds": 1, "budget": {"evaluations": 40}, "reference": False}
         )
     )
     records = [from_bytes(execute(plan.task(run))) for run in plan.runs]

@@ -191,6 +191,24 @@ def test_no_text_lies_in_a_panel_of_fronts(tmp_path):
         assert ax.get_title(loc="left") == f"{styles[k].label}\n{found} of {len(reference)} points"
 
 
+def test_fronts_of_a_map_that_has_metres_are_in_metres(tmp_path):
+    results, styles = results_of(tmp_path, ["a", "b"])
+    spec = results.plan.problems[0].spec
+    said = []
+    with report_style():
+        for resolution in ({}, {"resolution": 0.05}):
+            grid = {**spec["grid"], **resolution}
+            spec["grid"] = grid
+            figure = plot_fronts(results, 0, styles)
+            figure.draw_without_rendering()
+            ax = figure.axes[0]
+            said.append((figure.get_supxlabel(), [float(tick.get_text()) for tick in ax.get_xticklabels()], ax.get_xticks()))
+            assert figure.get_supylabel() == "Path vulnerability"
+    (cells, ticks, places), (metres, ticks_m, places_m) = said
+    assert (cells, metres) == ("Path length [cells]", "Path length [m]")
+    assert ticks == pytest.approx(places) and ticks_m == pytest.approx(0.05 * places_m)
+
+
 def test_panels_of_attainment_say_in_how_many_runs_there_is_a_legal_path(tmp_path):
     results, styles = results_of(tmp_path, ["a", "b"], n_seeds=5)
     for run in results.finished(1, [0])[:3]:

@@ -16,7 +16,7 @@ from pymoo_gridpath.plotting.style import label_axis
 from pymoo_gridpath.quality import SAME, ReferenceFront, merge_fronts
 from pymoo_gridpath.study.report.figures.style import REFERENCE, AlgorithmStyle, legend_above, panel_figure, panel_title
 from pymoo_gridpath.study.report.results import Results
-from pymoo_gridpath.study.specification.kinds import is_maximised, objective_label
+from pymoo_gridpath.study.specification.kinds import is_maximised, objective_axis
 
 # Lines of attainment surfaces, which differ in grey print too.
 _BENEATH: dict[str, Any] = {"color": "#bcc0c6", "linewidth": 2.8, "solid_joinstyle": "miter"}
@@ -167,12 +167,13 @@ def _height(front: np.ndarray, x: np.ndarray, top: float) -> np.ndarray:
 
 
 def _finish(results: Results, problem: int, figure: Figure, axes, low: np.ndarray, high: np.ndarray) -> None:
-    names = results.plan.problems[problem].spec["objectives"][:2]
+    spec = results.plan.problems[problem].spec
     labels = ["", ""]
     for ax in axes:
         labels = [
-            label_axis(axis, objective_label(name), is_maximised(name))
-            for axis, name in zip((ax.xaxis, ax.yaxis), names, strict=True)
+            label_axis(axis, label, is_maximised(name), factor)
+            for axis, name in zip((ax.xaxis, ax.yaxis), spec["objectives"][:2], strict=True)
+            for label, factor in [objective_axis(name, spec["grid"])]
         ]
         ax.set_xlim(low[0], high[0])
         ax.set_ylim(low[1], high[1])
