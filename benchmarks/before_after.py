@@ -37,6 +37,8 @@ _GENERATIONS = 3
 
 def workloads() -> Iterator[tuple[str, Callable[[], Callable[[], object]]]]:
     """Yield what is timed: its name, and a function that makes it ready and returns what to time, once each."""
+    from pymoo.optimize import minimize
+
     # The version that the environment names.
     from pymoo_gridpath import GridPathProblem
     from pymoo_gridpath.algorithms import make_algorithm
@@ -64,6 +66,11 @@ def workloads() -> Iterator[tuple[str, Callable[[], Callable[[], object]]]]:
 
         return ready
 
+    def run(n_var: int):
+        problem = problem_of(n_var + 1, "integer", 2)
+        algorithm = make_algorithm("NSGA2", problem, pop_size=500)
+        return lambda: lambda: minimize(problem, algorithm, ("n_gen", 100), seed=1)
+
     def evaluation(coding: str, n_obj: int, n_rows: int):
         problem = problem_of(32, coding, n_obj)
         rows = path_operators(problem)["sampling"](problem, n_rows, random_state=np.random.default_rng(1)).get("X")
@@ -73,6 +80,8 @@ def workloads() -> Iterator[tuple[str, Callable[[], Callable[[], object]]]]:
         problem = problem_of(size, coding, n_obj)
         return lambda: lambda: exact_front(problem)
 
+    for n_var in (31, 127):
+        yield f"NSGA-II, population 500, {n_var} genes, 100 generations", run(n_var)
     for coding in ("integer", "cells"):
         yield f"generation {coding}", generations(coding)
         for n_obj in (2, 3):

@@ -24,6 +24,7 @@ FLOORS = (
             "lazy",
             "memory",
             "neighbourhood",
+            "parallel",
             "pictures",
             "progress",
             "registry",

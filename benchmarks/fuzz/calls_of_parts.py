@@ -355,6 +355,10 @@ def _search(w: World) -> dict[str, Call]:
             exact.exact_front,
             {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0), "epsilon": 0.02, "share": None},
         ),
+        "exact_fronts": (
+            exact.exact_fronts,
+            {"problems": [w.problem], "budget": exact.Budget(max_seconds=2.0), "executor": None},
+        ),
         "exact_timed_front": (
             exact.exact_timed_front,
             {

@@ -119,6 +119,7 @@ def _algorithms(w: World) -> dict[str, Call]:
                 "seed": 1,
                 "callback": convergence.ConvergenceRecorder(),
                 "observe": lambda k, algorithm: True,
+                "executor": None,
             },
         ),
         "ahmed_deb_2013": (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from pymoo.core.evaluator import Evaluator
 
@@ -18,11 +20,17 @@ class ArrayEvaluator(Evaluator):
     """
 
     def eval(self, problem, pop, skip_already_evaluated=None, **kwargs):
-        if isinstance(pop, ArrayPopulation) and not any(pop.get("evaluated", to_numpy=False)):
+        if isinstance(pop, ArrayPopulation) and pop.not_evaluated():
             skip_already_evaluated = False
         return super().eval(problem, pop, skip_already_evaluated, **kwargs)
 
     def _eval(self, problem, pop, evaluate_values_of, **kwargs):
+        if isinstance(pop, ArrayPopulation):
+            out = problem.evaluate(pop.get("X"), return_values_of=evaluate_values_of, return_as_dictionary=True, **kwargs)
+            found = out if problem.has_constraints() else out | {"CV": np.zeros((len(pop), 1))}
+            pop.set(*itertools.chain.from_iterable(found.items()))
+            pop.mark_evaluated(out.keys())
+            return
         super()._eval(problem, pop, evaluate_values_of, **kwargs)
         if not problem.has_constraints():
             pop.set("CV", [_NO_VIOLATION] * len(pop))

@@ -71,7 +71,7 @@ class ArrayMating(Mating):
             missing -= len(offspring[-1])
             if missing == 0:
                 break
-        return ArrayPopulation.of(np.concatenate(offspring))
+        return ArrayPopulation.in_table(np.concatenate(offspring))
 
     def _cross(self, problem, X, random_state, kwargs):
         """Return the children of pairs of parents, shape (2, n_matings, n_var), as rows."""

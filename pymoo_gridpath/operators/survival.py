@@ -21,8 +21,9 @@ class ArraySurvival(Survival):
     """A survival whose populations are read and written as arrays; derive from it, first."""
 
     def do(self, problem, pop, *args, **kwargs):
-        survivors = super().do(problem, pop.view(ArrayPopulation), *args, **kwargs)
-        return survivors if isinstance(survivors, list) else survivors.view(ArrayPopulation)
+        pop = pop.view(ArrayPopulation)
+        survivors = super().do(problem, pop, *args, **kwargs)
+        return survivors if isinstance(survivors, list) else survivors.view(ArrayPopulation).settled(pop)
 
 
 def turns_of(pop, owner: str) -> np.ndarray:

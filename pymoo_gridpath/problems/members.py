@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import moocore
 import numpy as np
+from pymoo.core.individual import Individual
+from pymoo.core.population import Population
 
 
 class Members:
@@ -31,14 +33,13 @@ class Members:
     """
 
     def __init__(self, algorithm, pop=None):
-        members = (algorithm.pop if pop is None else pop).tolist()
+        pop = algorithm.pop if pop is None else pop
         self._names = algorithm.problem.objective_names
-        crossed = np.array([one.data["interfering_cells"] for one in members])
-        violation = [one.CV[0] for one in members] if algorithm.problem.has_constraints() else None
-        self._legal = [members[k] for k in np.flatnonzero(are_legal(crossed, violation))]
-        self.n_members, self.n_legal = len(members), len(self._legal)
-        self.F = np.array([one.F for one in self._legal], dtype=float).reshape(-1, algorithm.problem.n_obj)
-        self.turn = np.array([one.data["turn"] for one in self._legal], dtype=float)
+        violation = _values(pop, "CV").ravel() if algorithm.problem.has_constraints() else None
+        self._legal = pop[are_legal(_values(pop, "interfering_cells"), violation)]
+        self.n_members, self.n_legal = len(pop), len(self._legal)
+        self.F = _values(self._legal, "F").astype(float).reshape(-1, algorithm.problem.n_obj)
+        self.turn = _values(self._legal, "turn").astype(float)
 
     def front(self) -> np.ndarray:
         """Return the indices of the non-dominated ones, each point of F once, sorted by the objectives from the first on.
@@ -66,7 +67,15 @@ class Members:
         """Return the genes of some of the legal ones."""
         if not len(indices):
             return np.empty((0, n_var))
-        return np.array([self._legal[k].X for k in indices])
+        return _values(self._legal[indices], "X")
+
+
+def _values(pop: Population, key: str) -> np.ndarray:
+    """Return the values of a key, from each individual itself unless the population has a quicker way than pymoo's."""
+    if type(pop).get is not Population.get:
+        return np.asarray(pop.get(key))
+    is_attribute = hasattr(Individual, key)
+    return np.array([getattr(one, key) if is_attribute else one.data[key] for one in pop.tolist()])
 
 
 def are_legal(interfering_cells, violation=None) -> np.ndarray:

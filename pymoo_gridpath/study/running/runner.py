@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.parallel import check_executor
 from pymoo_gridpath.study.planning.expand import plan_study
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun
 from pymoo_gridpath.study.running.execute import execute, failed_run
@@ -104,8 +105,7 @@ def run_study(
     if isinstance(plan, Study):
         plan = plan_study(plan)
     checks.instance("plan", plan, Plan, " or a Study")
-    if executor is not None:
-        checks.function("executor", getattr(executor, "submit", executor), "an Executor of concurrent.futures", 2)
+    check_executor(executor)
     retry_failed = checks.flag("retry_failed", retry_failed)
     checks.function("tell", tell, "a function of a sentence", 1, optional=True)
     store = Store(folder)
