@@ -357,7 +357,7 @@ def _search(w: World) -> dict[str, Call]:
         ),
         "exact_fronts": (
             exact.exact_fronts,
-            {"problems": [w.problem], "budget": exact.Budget(max_seconds=2.0), "executor": None},
+            {"problems": [w.problem], "budget": exact.Budget(max_seconds=2.0), "executor": None, "epsilon": None, "share": 0.1},
         ),
         "exact_timed_front": (
             exact.exact_timed_front,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 from concurrent.futures import Executor
 
@@ -12,7 +13,14 @@ from pymoo_gridpath.parallel import carried_out, check_executor
 from pymoo_gridpath.representations.base import representation_of
 
 
-def exact_fronts(problems: Iterable, budget: Budget | None = None, executor: Executor | None = None) -> list[ExactResult]:
+def exact_fronts(
+    problems: Iterable,
+    budget: Budget | None = None,
+    executor: Executor | None = None,
+    *,
+    epsilon: float | None = None,
+    share: float | None = None,
+) -> list[ExactResult]:
     """Return the Pareto front of the legal paths of each of many problems.
 
     Each is that of `exact_front`, bit for bit, whatever carries it out; only a budget of time may end elsewhere.
@@ -26,6 +34,8 @@ def exact_fronts(problems: Iterable, budget: Budget | None = None, executor: Exe
     executor : concurrent.futures.Executor, optional
         What carries the searches out, such as a ``ProcessPoolExecutor``; this process by default. Threads are at work at the
         same time only in compiled kernels, the extra ``fast``. It is left open.
+    epsilon, share : float, optional
+        How far from its front each may be, see `exact_front`.
 
     Returns
     -------
@@ -54,6 +64,7 @@ def exact_fronts(problems: Iterable, budget: Budget | None = None, executor: Exe
         representation_of(problem)
     checks.instance("budget", budget, Budget, optional=True)
     check_executor(executor)
+    one = functools.partial(exact_front, epsilon=epsilon, share=share)
     if executor is None:
-        return [exact_front(problem, budget) for problem in problems]
-    return list(carried_out(executor, "the front of problem", exact_front, [(problem, budget) for problem in problems]))
+        return [one(problem, budget) for problem in problems]
+    return list(carried_out(executor, "the front of problem", one, [(problem, budget) for problem in problems]))

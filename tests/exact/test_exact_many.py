@@ -36,6 +36,14 @@ def test_fronts_are_those_of_single_searches_in_order(problems, kind):
         assert one.n_labels == other.n_labels
 
 
+def test_each_may_be_as_far_from_its_front_as_is_asked(problems):
+    with ThreadPoolExecutor(2) as executor:
+        found = exact_fronts(problems, executor=executor, epsilon=0.5)
+    expected = [exact_front(problem, epsilon=0.5) for problem in problems]
+    for one, other in zip(found, expected, strict=True):
+        assert np.array_equal(one.F, other.F) and one.certified == other.certified
+
+
 def test_a_budget_is_of_each(problems):
     found = exact_fronts(problems, Budget(max_labels=1))
     assert [one.complete for one in found] == [exact_front(problem, Budget(max_labels=1)).complete for problem in problems]
