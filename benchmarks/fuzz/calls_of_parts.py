@@ -351,6 +351,7 @@ def _search(w: World) -> dict[str, Call]:
         "share_found": (quality.share_found, {"F": front, "front": front}),
         "Budget": (exact.Budget, {"max_seconds": 1.0, "max_labels": 1000, "max_memory": 10**8, "watch": lambda meter: False}),
         "Certificate": (exact.Certificate, {"epsilon": 0.02, "share": 0.1}),
+        "Certificate.said": (exact.Certificate(0.02, 0.1).said, {"name": "share"}),
         "exact_front": (
             exact.exact_front,
             {"problem": w.problem, "budget": exact.Budget(max_seconds=2.0), "epsilon": 0.02, "share": None},

@@ -54,6 +54,7 @@ class Certificate:
     def said(self, name: str) -> str:
         """Return one of the two in words."""
         of = {"epsilon": "the front", "share": "the front's range"}
+        name = checks.one_of("name", name, tuple(of))
         return f"within {_percent(getattr(self, name))} of {of[name]}"
 
 
