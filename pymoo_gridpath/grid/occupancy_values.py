@@ -23,7 +23,7 @@ def cells_of_occupancy(
         width = checks.whole("width", width, 1, expected="a number of columns", error=GridError)
         if values.ndim != 1 or values.size == 0 or values.size % width:
             n = f"{values.size:,} values" if values.ndim == 1 else f"the shape {values.shape}"
-            raise GridError(f"occupancy has {n}, expected a flat array of rows of the width, {checks.shown(width)} values")
+            raise GridError(f"occupancy has {n}, expected a flat array of rows of {checks.shown(width)} values, the width")
         values = values.reshape(-1, width)
     if values.ndim != 2 or values.size == 0:
         raise GridError(f"occupancy has the shape {values.shape}, expected {expected}")
