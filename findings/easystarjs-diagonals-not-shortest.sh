@@ -9,7 +9,8 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install easystarjs@0.4.4 --silent --no-audit --no-fund --prefix "$tmp"
+pinned="easystarjs==0.4.4"
+npm install ${pinned//==/@} --silent --no-audit --no-fund --prefix "$tmp"
 [[ $(node -p "require('./node_modules/easystarjs/package.json').version") == 0.4.4 ]]
 node - <<'JS'
 const assert = require("assert");

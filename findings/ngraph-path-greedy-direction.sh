@@ -9,7 +9,8 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install ngraph.path@1.6.1 ngraph.graph@20.1.2 --silent --no-audit --no-fund --prefix "$tmp"
+pinned="ngraph.path==1.6.1 ngraph.graph==20.1.2"
+npm install ${pinned//==/@} --silent --no-audit --no-fund --prefix "$tmp"
 [[ $(node -p "require('./node_modules/ngraph.path/package.json').version") == 1.6.1 ]]
 node - <<'JS'
 const assert = require("assert");

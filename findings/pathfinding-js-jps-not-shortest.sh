@@ -10,7 +10,8 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install pathfinding@0.4.18 --silent --no-audit --no-fund --prefix "$tmp"
+pinned="pathfinding==0.4.18"
+npm install ${pinned//==/@} --silent --no-audit --no-fund --prefix "$tmp"
 [[ $(node -p "require('./node_modules/pathfinding/package.json').version") == 0.4.18 ]]
 node - <<'JS'
 const assert = require("assert");

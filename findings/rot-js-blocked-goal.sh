@@ -9,7 +9,8 @@ set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp"
-npm install rot-js@2.2.1 --silent --no-audit --no-fund --prefix "$tmp"
+pinned="rot-js==2.2.1"
+npm install ${pinned//==/@} --silent --no-audit --no-fund --prefix "$tmp"
 [[ $(node -p "require('./node_modules/rot-js/package.json').version") == 2.2.1 ]]
 cat > check.mjs <<'JS'
 import assert from "node:assert";
