@@ -63,6 +63,7 @@ class LargeSet:
     """What a page asks of a trade-off set, with random walks for paths."""
 
     feasible = True
+    advice = ""
     named: ClassVar = {"shortest": 0, "safest": 700, "smoothest": 3, "knee": 44}
     # A waypoint for every 25 cells, and the end.
     smoother = SimpleNamespace(places=lambda cells: np.r_[0 : len(cells) - 1 : 25, len(cells) - 1])

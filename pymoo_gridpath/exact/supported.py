@@ -20,6 +20,9 @@ from pymoo_gridpath.search.shortest import Backward
 # let run, where a search takes long enough.
 _SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**16
 
+# Of smaller grids a part saves less than it takes to find.
+_CELLS_WORTH_A_PART = 2**10
+
 
 class Hull(NamedTuple):
     """Points on the lower left hull of a front, and lower bounds for what lies between them.
@@ -118,13 +121,14 @@ def _supported_points(
     # Where costs depend on headings, which of equal paths is found hangs on all labels, those that lead nowhere too.
     most = (UNREACHABLE, UNREACHABLE) if costs.with_heading else (right[0], left[1])
     # First the cells from where the goal is no farther than for the front, then those that lie on ways no longer than for it.
-    if not costs.with_heading:
+    parted = not costs.with_heading and moves.n_cells >= _CELLS_WORTH_A_PART
+    if parted:
         near = (bounds[0] <= most[0]) & (bounds[1] <= most[1])
         moves, costs, start, goal, (bounds,) = _around(near, moves, costs, start, goal, [bounds])
     backward = moves.backward()
     spent = [_spent(moves, backward, costs, k, start, bounds, most[k], meter) for k in range(2)]
     spent = np.stack(spent)
-    if not costs.with_heading:
+    if parted:
         near = (spent[0] + bounds[0] <= most[0]) & (spent[1] + bounds[1] <= most[1])
         moves, costs, start, goal, (bounds, spent) = _around(near, moves, costs, start, goal, [bounds, spent])
 
@@ -187,7 +191,7 @@ def _ends(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, map_)
 
     Where no cost depends on headings, bounds that are beyond an end are not worked out: they are too low, but beyond it.
     """
-    orders = [costs.take(order) for order in ((0, 1), (1, 0))]
+    orders = costs, costs.take((1, 0))
     one, two = (Backward(moves, each.step, each.field, goal, costs.with_heading, enter=each.enter) for each in orders)
     if costs.with_heading:
         list(map_(lambda search: search.run(meter.stop), (one, two)))
