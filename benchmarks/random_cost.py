@@ -195,7 +195,9 @@ def main() -> None:
             found = in_process(sides[form], form, arguments.size, arguments.seed)
             assert found["complete"]
             seconds[form].append(found["seconds"])
-            print(f"{form}: {len(found['front'])} points, {found['seconds']:.1f} s, and {found['made']:.1f} s to make the problem")
+            print(
+                f"{form}: {len(found['front'])} points, {found['seconds']:.1f} s, and {found['made']:.1f} s to make the problem"
+            )
             if form == "directed":
                 directed_front = np.array(found["front"])
     ratio = np.median(seconds["directed"]) / np.median(seconds["undirected"])
@@ -203,7 +205,8 @@ def main() -> None:
     begin = time.process_time()
     expected = front_by_labels(arguments.size, arguments.seed)
     equal = np.array_equal(directed_front, expected)
-    print(f"label search: {len(expected)} points, {time.process_time() - begin:.1f} s; the fronts are {'' if equal else 'NOT '}equal")
+    print(f"label search: {len(expected)} points, {time.process_time() - begin:.1f} s")
+    print("the fronts are equal" if equal else "the fronts differ")
     sys.exit(not equal)
 
 

@@ -27,7 +27,7 @@ def steps(name):
     if not backtracking:
         return ahead
     straight = [(1, 0), (0, 1), (-1, 0), (0, -1)]
-    return straight if neighbours == "K2" else straight + [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+    return straight if neighbours == "K2" else [*straight, (1, 1), (-1, 1), (-1, -1), (1, -1)]
 
 
 def is_blocked(name, x, y):
@@ -123,6 +123,7 @@ def front(name, objectives):
 
 def same(front, other, tie=1e-5):
     """Whether two fronts are the same, but for points that differ from others by so little that they may be ties."""
+
     def close(one, points):
         return any(all(abs(a - b) <= tie for a, b in zip(one, point, strict=True)) for point in points)
 

@@ -10,7 +10,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.errors import GridError, GridPathError
-from pymoo_gridpath.grid import Cell, OccupancyGrid, check_grid
+from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.neighbourhood import DIAGONAL, HEADINGS, LENGTHS
 from pymoo_gridpath.objectives.base import OBJECTIVES, Objective
 from pymoo_gridpath.objectives.ground import climbed, left_values
@@ -203,12 +203,12 @@ class Exposure(Objective):
     label = "Exposure to guards"
     best = "least seen"
 
-    def __init__(self, guards: Sequence[Cell]):
+    def __init__(self, guards: Sequence[Sequence[int]]):
         expected = "cells such as [(4, 9), (7, 2)]"
         cells = checks.array("guards", guards, (None, 2), "iu", expected=expected)
         if not len(cells):
             raise GridPathError(f"guards is {shown(guards)}, expected {expected}")
-        self.guards = [[int(x), int(y)] for x, y in cells]
+        self.guards: list[Sequence[int]] = [[int(x), int(y)] for x, y in cells]
 
     def moves(self, grid):
         seen = self.seen(grid)

@@ -33,9 +33,9 @@ class Asletismac(Suite):
     Parameters
     ----------
     instance : str
-        Its published name, ``ASLETISMAC_{NO|CH|LA}_X{n}_Y{n}_{P1|P2|P3|PM}_{K2|K3}_{BF|BT}``: obstacles (none, a chequerboard, a
-        lake), cells a side, hills, steps (to the right and up, or diagonally to both as well), and whether paths may backtrack.
-        Where they may (BT), steps lead along four or eight headings.
+        Its published name, ``ASLETISMAC_{NO|CH|LA}_X{n}_Y{n}_{P1|P2|P3|PM}_{K2|K3}_{BF|BT}``: obstacles (none, a chequerboard,
+        a lake), cells a side, hills, steps (to the right and up, or diagonally to both as well), and whether paths may
+        backtrack. Where they may (BT), steps lead along four or eight headings.
 
     Raises
     ------

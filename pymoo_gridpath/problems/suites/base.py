@@ -80,7 +80,7 @@ class Suite(ABC):
 
         Raises
         ------
-        UnreachableError
+        GridError
             If the problem does not have a path.
         GridPathError
             As `GridPathProblem`.
@@ -132,7 +132,7 @@ def make_suite(name: str, **arguments: Any) -> Suite:
     >>> suite = make_suite("asletismac", instance="ASLETISMAC_CH_X8_Y8_PM_K3_BF")
     >>> problem = suite.problem(["length", "ascent"])
     >>> problem.pareto_front().round(2).tolist()
-    [[11.66, 11.42], [12.83, 10.59]]
+    [[10.49, 2.68], [11.07, 2.3]]
     """
     cls: Any = SUITES[checks.known("suite", name, SUITES)]
     try:

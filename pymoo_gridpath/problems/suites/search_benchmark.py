@@ -52,7 +52,7 @@ class RandomCostGrid(Suite):
     --------
     >>> problem = RandomCostGrid(6, 4, seed=3).problem()
     >>> problem.pareto_front().tolist()
-    [[17.0, 33.0], [18.0, 29.0], [21.0, 27.0], [22.0, 26.0], [25.0, 22.0]]
+    [[33.0, 31.0], [39.0, 27.0], [46.0, 26.0], [47.0, 25.0], [48.0, 21.0]]
     """
 
     name = "random-cost"
@@ -116,15 +116,15 @@ class GuardsGrid(Suite):
     name = "guards"
     follows = (
         "follows the definition of GUARDS by Peer, Hernandez, Koenig, Felner and Salzman (arXiv 2603.24084, section 4.4) for "
-        "guards that are given: where the benchmark's own stand is in files that were not to be had, and so is the direction of "
-        "the lines of sight, here from the guard to the cell"
+        "guards that are given: where the benchmark's own stand is in files that were not to be had, and so is the direction "
+        "of the lines of sight, here from the guard to the cell"
     )
     files = ("map",)
 
     def __init__(
         self,
         map: OccupancyGrid | str | os.PathLike[str],
-        guards: Sequence[Cell],
+        guards: Sequence[Sequence[int]],
         start: Cell | None = None,
         goal: Cell | None = None,
     ):
