@@ -466,7 +466,8 @@ def test_a_plan_that_was_changed_makes_nobody_import(hikers, tmp_path, place, va
 
 def test_runs_are_known_by_what_a_file_of_costs_holds(tmp_path):
     np.save(tmp_path / "mud.npy", np.ones((8, 8)))
-    mud = {"class": "ground", "cost": str(tmp_path / "mud.npy"), "weight": 2.0}
+    # As maps are, it is looked for beside the file of the study.
+    mud = {"class": "ground", "cost": "mud.npy", "weight": 2.0}
     setup = {
         "problems": [{"random": {"size": 8, "p0": 0.1}, "representation": "cells", "objectives": ["length", mud]}],
         "algorithms": [{"algorithm": "NSGA2", "pop_size": 10}],
@@ -474,13 +475,17 @@ def test_runs_are_known_by_what_a_file_of_costs_holds(tmp_path):
         "budget": {"generations": 2},
         "reference": False,
     }
-    plan = plan_study(Study.from_dict(setup))
+    plan = plan_study(Study.from_dict(setup, folder=tmp_path))
     store = Store(tmp_path / "store")
     assert run_study(plan, store.folder).n_failed == 0
-    again = plan_study(Study.from_dict(setup))
+    again = plan_study(Study.from_dict(setup, folder=tmp_path))
     assert [run.key for run in again.runs] == [run.key for run in plan.runs]
+    (tmp_path / "moved").mkdir()
+    np.save(tmp_path / "moved" / "mud.npy", np.ones((8, 8)))
+    moved = plan_study(Study.from_dict(setup, folder=tmp_path / "moved"))
+    assert [run.key for run in moved.runs] == [run.key for run in plan.runs]
     np.save(tmp_path / "mud.npy", np.eye(8))
-    other = plan_study(Study.from_dict(setup))
+    other = plan_study(Study.from_dict(setup, folder=tmp_path))
     assert {run.key for run in other.runs}.isdisjoint(run.key for run in plan.runs)
     # A plan that was made before does not run on other costs under its own keys, in a process that has not read those.
     build._problems.clear()
@@ -488,4 +493,4 @@ def test_runs_are_known_by_what_a_file_of_costs_holds(tmp_path):
     assert outcome.n_failed == 1 and "mud.npy is not what the study was planned with" in outcome.messages[0]
     (tmp_path / "mud.npy").unlink()
     with pytest.raises(GridPathError, match=r"mud\.npy"):
-        plan_study(Study.from_dict(setup))
+        plan_study(Study.from_dict(setup, folder=tmp_path))

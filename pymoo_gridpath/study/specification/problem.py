@@ -21,6 +21,7 @@ from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import AXES, check_problem_settings, make_spec, set_fields, set_given
 from pymoo_gridpath.study.specification.kinds import OBJECTIVE, SUITE
 from pymoo_gridpath.study.specification.moving import MovingObstacles, check_moving
+from pymoo_gridpath.study.specification.values import Where
 
 UNKNOWN = ("free", "occupied")
 # What is minimised where neither the problem nor a suite says so.
@@ -234,7 +235,7 @@ class ProblemSpec:
         files = {key: beside(folder, arguments[key]) for key in cls.files if isinstance(arguments.get(key), str)}
         return cls(**arguments | files)
 
-    def _objectives(self, value: Any, where: values.Where) -> tuple[Any, ...]:
+    def _objectives(self, value: Any, where: Where) -> tuple[Any, ...]:
         suite = self.made_suite()
         return _objectives(value if suite is None else values.told(where, suite.chosen, value))
 
@@ -273,6 +274,26 @@ def beside(folder: str | os.PathLike[str], name: str) -> str:
     path = Path(folder) / name
     shipped = not os.path.exists(path) and Path(name).name == name and not Path(name).suffix
     return name if shipped else os.fspath(path)
+
+
+def problem_in(item: Any, where: Where, folder: Path) -> ProblemSpec:
+    """Return a problem of a study; files of objectives in its table are looked for in the study's folder, as maps are."""
+    if isinstance(item, Mapping) and isinstance(item.get("objectives"), list | tuple):
+        item = {**item, "objectives": [_with_files(one, folder) for one in item["objectives"]]}
+    return make_spec(ProblemSpec, item, where)
+
+
+def _with_files(item: Any, folder: Path) -> Any:
+    """Return an objective, a table with its files where they are."""
+    if not isinstance(item, Mapping):
+        return item
+    try:
+        files = own.read({"class": item.get("class")}, OBJECTIVE, ("objectives",)).cls.files
+    except StudyError:
+        # It is said by whoever makes the problem.
+        return item
+    found = {key: str((folder / item[key]).absolute()) for key in files if isinstance(item.get(key), str)}
+    return {**item, **found}
 
 
 def _objectives(value: Any) -> tuple[Any, ...]:
