@@ -278,7 +278,7 @@ def _codings(w: World) -> dict[str, Call]:
         X = w.rows(coding)
         own = {"axis": "x"} if isinstance(coding, representations.MonotoneRepresentation) else {}
         if cls is representations.CellSequence:
-            own = {"max_cells": 20, "fields": [w.field], "spare": 2.0}
+            own = {"max_cells": 20, "fields": [w.field], "spare": 2.0, "backtracking": True}
             X = coding.repair(X, w.random)
         if cls is representations.TimedPaths:
             own = {"movers": w.timed.movers, "horizon": 12}
