@@ -68,6 +68,7 @@ PLAIN_PAGES = (
     "companions",
     "planners",
     "papers",
+    "suites",
     "maps",
     "explorer",
     "command_line",

@@ -20,7 +20,7 @@ def _suites(w: World) -> dict[str, Call]:
         "RegionOfSightMaps": {"kind": "maze", "seed": 2},
     }
     found: dict[str, Call] = {
-        "make_suite": (problems.make_suite, {"name": "random-cost", "width": 4, "height": 3}),
+        "make_suite": (problems.make_suite, {"suite": "random-cost", "width": 4, "height": 3}),
         "Asletismac.instances": (problems.Asletismac.instances, {"backtracking": True}),
         "ProblemSpec.made_suite": (
             study.ProblemSpec(suite=problems.RandomCostGrid(4, 3)).made_suite,

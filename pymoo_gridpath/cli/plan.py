@@ -24,6 +24,7 @@ from pymoo_gridpath.cli.ground import add_ground, given_ground, ground_of
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
 from pymoo_gridpath.cli.query import add_query, ends, grown
 from pymoo_gridpath.cli.resume import add_resume, read_stored, said, write_populations
+from pymoo_gridpath.cli.suites import add_suite, suite_problem
 from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
 from pymoo_gridpath.progress import Progress, say
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from pymoo_gridpath.grid import OccupancyGrid
 
 DEFAULT_MAP = "warehouse"
+DEFAULT_OBJECTIVES = ["length", "vulnerability"]
 
 # Options that planners take, each those that its constructor does.
 PLANNERS_OWN = ("max_seconds", "epsilon", "share")
@@ -64,7 +66,6 @@ def add_plan_command(commands) -> None:
     search.add_argument(
         "--objectives",
         type=lambda text: text.split(","),
-        default=["length", "vulnerability"],
         metavar="A,B",
         help="some of length, vulnerability, turn, inflation, clearance (default: length,vulnerability)",
     )
@@ -125,6 +126,7 @@ def add_plan_command(commands) -> None:
     plan.add_argument("--html", type=html_file, metavar="FILE", help="write a page to choose a path from")
     plan.add_argument("--show", action="store_true", help="draw the map with the paths on a terminal that can")
     plan.add_argument("--units", choices=("cells", "m"), help="axes of the map figure (default: metres if the map has them)")
+    add_suite(plan, search)
     add_resume(plan, search)
 
 
@@ -140,8 +142,11 @@ def _plan(arguments) -> int:
 
     if arguments.resume is not None:
         return _go_on(arguments)
+    if arguments.suite is not None:
+        return _plan_suite(arguments)
     if arguments.obstacles == "limit" and arguments.potential_limit is None:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
+    arguments.objectives = DEFAULT_OBJECTIVES if arguments.objectives is None else arguments.objectives
     map_name = arguments.map or DEFAULT_MAP
     grid = load(map_name, arguments)
     if arguments.units == "m":
@@ -173,6 +178,24 @@ def _plan(arguments) -> int:
         problem = GridPathProblem(grid, start, goal, representation, axis=arguments.axis, **settings)
     algorithm = None if standing else _algorithm(name, spec, problem, arguments)
     return _carry_out(problem, name, spec, algorithm, arguments, source, unknown)
+
+
+def _plan_suite(arguments) -> int:
+    """Plan on a problem of a suite."""
+    from pymoo_gridpath.algorithms import find_algorithm
+    from pymoo_gridpath.decision.provenance import describe_source
+
+    problem = suite_problem(arguments)
+    grid, arguments.objectives = problem.grid, problem.objective_names
+    if arguments.units == "m":
+        grid.check_resolution("--units m")
+    check_waypoint_options(arguments, grid)
+    name = arguments.algorithm or ("nsga2" if problem.n_obj > 1 else "ga")
+    spec = find_algorithm(name, problem.n_obj)
+    _settle_options(spec, name, arguments)
+    arguments.needs = _needed(grid, problem.start, problem.representation.name, arguments, spec.reference)
+    algorithm = _algorithm(name, spec, problem, arguments)
+    return _carry_out(problem, name, spec, algorithm, arguments, describe_source(grid), None)
 
 
 def _go_on(arguments) -> int:

@@ -91,7 +91,7 @@ def test_maps_of_guards_lie_beside_the_study(tmp_path):
     [
         ({"suite": "asletismak"}, "suite is 'asletismak'; did you mean 'asletismac'"),
         ({"suite": {"class": "zdt"}}, "class is 'zdt'; expected one of asletismac"),
-        ({"suite": "asletismac"}, "missing 1 required positional argument: 'instance'"),
+        ({"suite": "asletismac"}, "'asletismac' cannot be made: missing a required argument: 'instance'"),
         ({"suite": {"class": "asletismac", "name": FORWARD}}, "asletismac takes no argument 'name'; did you mean 'instance'"),
         ({"suite": {"class": "asletismac", "instance": "ZDT1"}}, "instance is 'ZDT1', expected a name such as ASLETISMAC_NO"),
         ({"suite": {"class": "random-cost", "width": 4, "height": 3}, "start": [1, 1]}, "start is for maps from a file"),

@@ -107,14 +107,14 @@ class Suite(ABC):
 SUITES: Registry[type[Suite]] = Registry("suite", "pymoo_gridpath.suites", Suite)
 
 
-def make_suite(name: str, **arguments: Any) -> Suite:
+def make_suite(suite: str | type[Suite], **arguments: Any) -> Suite:
     """Return one of the problems of a suite by name.
 
     Parameters
     ----------
-    name : str
+    suite : str or type
         One of `SUITES`: "asletismac", "random-cost", "guards", "small-environments", "region-of-sight", or another that is
-        registered.
+        registered; or the class itself.
     **arguments
         Those of its class.
 
@@ -134,10 +134,14 @@ def make_suite(name: str, **arguments: Any) -> Suite:
     >>> problem.pareto_front().round(2).tolist()
     [[10.49, 2.68], [11.07, 2.3]]
     """
-    cls: Any = SUITES[checks.known("suite", name, SUITES)]
+    cls: Any = suite
+    if not isinstance(cls, type):
+        cls = SUITES[checks.known("suite", suite, SUITES)]
+    elif not issubclass(cls, Suite):
+        raise GridPathError(f"suite is {checks.shown(cls)}, expected a class derived from Suite")
     try:
         inspect.signature(cls).bind(**arguments)
     except TypeError as error:
         takes = ", ".join(str(one) for one in inspect.signature(cls).parameters.values())
-        raise GridPathError(f"the suite {name!r} cannot be made: {error}; expected ({takes})") from None
+        raise GridPathError(f"the suite {cls.name!r} cannot be made: {error}; expected ({takes})") from None
     return cls(**arguments)

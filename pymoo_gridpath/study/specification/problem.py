@@ -16,7 +16,7 @@ from pymoo_gridpath.grid.arguments import as_footprint
 from pymoo_gridpath.maps import MAX_CELLS
 from pymoo_gridpath.objectives import Objective, make_objectives
 from pymoo_gridpath.planners.signature import parameters_of
-from pymoo_gridpath.problems import OBSTACLES, Suite
+from pymoo_gridpath.problems import OBSTACLES, Suite, make_suite
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import AXES, check_problem_settings, make_spec, set_fields, set_given
 from pymoo_gridpath.study.specification.kinds import OBJECTIVE, SUITE
@@ -217,8 +217,6 @@ class ProblemSpec:
             made = self.made_suite()
         except GridPathError as error:
             raise StudyError(str(error), where) from None
-        except TypeError as error:
-            raise StudyError(f"the suite cannot be made of these arguments: {error}", where) from None
         if made is not None and not made.backtracking:
             for key in ("representation", "moving"):
                 if getattr(self, key) is not None:
@@ -233,7 +231,7 @@ class ProblemSpec:
         cls: Any
         cls, _, arguments = own.read(self.suite, SUITE, ("suite",))
         files = {key: beside(folder, arguments[key]) for key in cls.files if isinstance(arguments.get(key), str)}
-        return cls(**arguments | files)
+        return make_suite(cls, **arguments | files)
 
     def _objectives(self, value: Any, where: Where) -> tuple[Any, ...]:
         suite = self.made_suite()
