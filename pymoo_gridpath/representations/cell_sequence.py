@@ -75,7 +75,6 @@ class CellSequence(Representation):
     Attributes
     ----------
     max_cells : int
-    backtracking : bool
 
     Examples
     --------
