@@ -312,12 +312,14 @@ def test_paths_without_backtracking_need_a_way():
     wall = np.zeros((3, 5))
     wall[:2, 2] = 1
     with pytest.raises(UnreachableError, match=r"every path from \(0, 0\) to \(4, 0\) .* goes back along x or y"):
-        GuardsGridLike(OccupancyGrid(wall)).problem()
+        Walled(OccupancyGrid(wall)).problem()
+    with pytest.raises(TypeError, match="abstract"):
+        Suite()
 
 
-class GuardsGridLike(Suite):
-    name, follows, label, backtracking = "like", "follows nobody", "like", False
+class Walled(Suite):
+    name, follows, label, backtracking, query = "walled", "follows nobody", "walled", False, None
     objectives = (Length(),)
 
     def __init__(self, grid):
-        self.query = grid, (0, 0), (4, 0)
+        self.grid, self.query = grid, (grid, (0, 0), (4, 0))

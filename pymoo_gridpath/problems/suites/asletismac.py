@@ -61,8 +61,8 @@ class Asletismac(Suite):
 
     name = "asletismac"
     follows = (
-        "follows the definitions of Weise and Mostaghim (arXiv 2010.04501) by which PlatEMO publishes fronts of 3 to 14 cells a "
-        "side; the exact fronts of every two and three objectives are those"
+        "follows the definitions of Weise and Mostaghim (arXiv 2010.04501) by which PlatEMO publishes fronts of 3 to 14 cells "
+        "a side; the exact fronts of every two and three objectives are those"
     )
 
     def __init__(self, instance: str):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -14,6 +13,7 @@ from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.problems.grid_path import GridPathProblem
 from pymoo_gridpath.registry import Registry
+from pymoo_gridpath.representations import CellSequence
 
 
 class Suite(ABC):
@@ -44,12 +44,12 @@ class Suite(ABC):
     def label(self) -> str:
         """What tables call the problem."""
 
-    @functools.cached_property
+    @property
     @abstractmethod
     def query(self) -> tuple[OccupancyGrid, Cell, Cell]:
         """The grid, the start and the goal."""
 
-    @functools.cached_property
+    @property
     @abstractmethod
     def objectives(self) -> tuple[Objective, ...]:
         """All objectives that are defined."""
@@ -85,8 +85,6 @@ class Suite(ABC):
         GridPathError
             As `GridPathProblem`.
         """
-        from pymoo_gridpath.representations import CellSequence
-
         grid, start, goal = self.query
         if not self.backtracking:
             if options.get("representation") is not None:
