@@ -191,6 +191,26 @@ print(from_bytes(execute(pickle.loads({pickle.dumps(plan.task(plan.runs[0]))!r})
     assert "with which the study was planned" in out.strip().splitlines()[-1]
 
 
+def test_code_that_is_installed_goes_by_its_version_and_other_code_by_what_it_says(hikers, tmp_path):
+    said = code_of(hikers.Hilly)
+    assert said.startswith("sha256 ")
+    # A source folder with what its build has left, as one that is installed for development.
+    left = tmp_path / "hikers.egg-info"
+    left.mkdir()
+    (left / "PKG-INFO").write_text("Metadata-Version: 2.1\nName: hikers\nVersion: 1.0\n")
+    (left / "top_level.txt").write_text("hikers\n")
+    (left / "SOURCES.txt").write_text("hikers.py\n")
+    code_of.cache_clear()
+    assert code_of(hikers.Hilly) == said
+    installed = tmp_path / "hikers-2.0.dist-info"
+    installed.mkdir()
+    (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: hikers\nVersion: 2.0\n")
+    (installed / "RECORD").write_text("hikers.py,,\n")
+    code_of.cache_clear()
+    assert code_of(hikers.Hilly) == "hikers 2.0"
+    code_of.cache_clear()
+
+
 def test_arguments_are_part_of_the_key(hikers):
     keys = {
         planned(problem={"objectives": ["length", {"class": "hikers:Hilly", "slope": slope}]}).runs[0].key
@@ -241,7 +261,7 @@ def test_an_operator_by_its_name_is_the_same_as_by_its_path(hikers, shuffle, tmp
     _, algorithm = built(third)
     assert type(algorithm.mating.crossover) is hikers.Sbx and number(algorithm.mating.crossover.eta) == 3
     # In processes that have the module, and nothing registered.
-    with LocalProcesses(2) as executor:
+    with LocalProcesses(1) as executor:
         outcome = run_study(third, tmp_path / "out", executor)
     assert (outcome.n_run, outcome.n_failed) == (1, 0)
 
@@ -375,7 +395,7 @@ def study_of(algorithm):
 def test_an_algorithm_that_is_made_already_runs_in_other_processes(hikers, tmp_path):
     make = made_algorithms(hikers)["with arguments"]
     plan = planned({"algorithm": make(), "pop_size": None})
-    with LocalProcesses(2) as executor:
+    with LocalProcesses(1) as executor:
         outcome = run_study(plan, tmp_path / "out", executor)
     assert (outcome.n_run, outcome.n_failed) == (1, 0)
     stored = Store(tmp_path / "out").read_plan()
