@@ -6,11 +6,11 @@
 FOLDER holds maps of the MovingAI benchmark, each with its queries beside it as NAME.map.scen. The libraries are those of the
 extra ``peers``; one that is not there is named with the reason, and left out. Paths: each library is called as its
 documentation says; the corner rule that it follows is measured on maps of four cells, and each path is checked against that
-rule, our optimum under it, at the library's own cost of a diagonal and at the square root of two, and the published length.
-Setting up (a graph, an array) is timed apart from the query, which takes the least time of all repeats. Searches: the coding
-and objectives of Ahmed and Deb (2013), as many evaluations for each, rows evaluated all at once; the hypervolume of the last
-population's legal paths over that of the exact front; medians over seeds. Times are processor time; progress goes to standard
-error.
+rule, our optimum under it, at the library's own cost of a diagonal and at the square root of two, and the published length. A
+seeded dense map is added, of which nothing is published. Setting up (a graph, an array) is timed apart from the query, which
+takes the least time of all repeats. Searches: the coding and objectives of Ahmed and Deb (2013), as many evaluations for each,
+rows evaluated all at once; the hypervolume of the last population's legal paths over that of the exact front; medians over
+seeds. Times are processor time; progress goes to standard error.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ os.environ.update({f"{name}_NUM_THREADS": "1" for name in ("OMP", "OPENBLAS", "M
 
 import logging
 
-from peer_libraries.measure import cases_of, measure_paths, measure_searches, split
+from peer_libraries.measure import cases_of, dense_case, measure_paths, measure_searches, split
 from peer_libraries.paths import path_peers
 from peer_libraries.searches import search_peers
 from peer_libraries.tables import agreement_table, library_table, machine, path_times, search_table
@@ -70,10 +70,10 @@ def main() -> None:
         library_table([*all_paths, *all_searches], no_paths | no_searches),
     ]
     if paths:
-        cases = cases_of(arguments.folder, arguments.maps, arguments.queries)
+        cases = [*cases_of(arguments.folder, arguments.maps, arguments.queries), dense_case(arguments.queries)]
         rows, failed = measure_paths(paths, cases, arguments.repeats)
         texts += [
-            f"### What comes back, {arguments.queries} queries on each of {', '.join(arguments.maps)}",
+            f"### What comes back, {arguments.queries} queries on each of {', '.join(case.name for case in cases)}",
             agreement_table(rows),
         ]
         texts += [f"`{label}` failed: {why}" for label, why in failed.items()]
@@ -88,7 +88,7 @@ def main() -> None:
         slow = {row.peer.label for row in found if row.runs[0][0] > arguments.patience}
         searches = [peer for peer in searches if peer.label not in slow]
         if slow and size != arguments.sizes[-1]:
-            texts.append(f"Left out below, for they took more than {arguments.patience:g} s here: {', '.join(sorted(slow))}.\n")
+            texts.append(f"Left out below, for they took more than {arguments.patience:g} s here: {'; '.join(sorted(slow))}.\n")
     text = "\n\n".join(part.strip("\n") for part in texts) + "\n"
     if arguments.output:
         arguments.output.write_text(text, encoding="utf-8")

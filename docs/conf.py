@@ -19,7 +19,8 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
 ]
-exclude_patterns = ["_build", "jupyter_execute", "README.md"]
+# What other pages include is no page.
+exclude_patterns = ["_build", "jupyter_execute", "README.md", "peers_measured.md"]
 templates_path = ["_templates"]
 suppress_warnings: list[str] = []
 
@@ -68,6 +69,7 @@ PLAIN_PAGES = (
     "companions",
     "planners",
     "papers",
+    "peers",
     "maps",
     "explorer",
     "command_line",

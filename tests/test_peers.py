@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 
 from peer_libraries.agreement import counts, judge, measured_rule, optimum
 from peer_libraries.base import Peer, markdown
-from peer_libraries.measure import cases_of, measure_paths, measure_searches, split
+from peer_libraries.measure import cases_of, dense_case, measure_paths, measure_searches, split
 from peer_libraries.paths import OurAStar, PathPeer, Scipy, edges, path_peers
 from peer_libraries.searches import search_peers
 from peer_libraries.tables import agreement_table, library_table, path_times, search_table
@@ -121,13 +121,14 @@ def test_tables_say_what_was_measured(tmp_path):
     (tmp_path / f"{name}.map.scen").write_text("\n".join(["version 1", *entries]))
     cases = cases_of(tmp_path, [name], 1)
     assert [case.queries for case in cases] == [[((0, 0), (2, 0), 4.0)]]
+    cases.append(dense_case(3))
     present, missing = split([OurAStar(False), OurAStar(True), Scipy(False), Absent()])
     assert missing == {"surely-not-there": "surely-not-there is not installed"}
     rows, failed = measure_paths([*present, Wrong()], cases, 1)
     assert failed == {"wrong": "RuntimeError: not today"}
     kept, cut, scipy = agreement_table(rows).splitlines()[2:]
-    assert "| never cut | √2 | 1 of 1 | 1 of 1 | 1 of 1 | 0.00 | 1 of 1 | 0.00 to 0.00 |" in kept
-    assert "| cut | √2 | 1 of 1 | 1 of 1 | 1 of 1 | 0.00 | 0 of 1 | -29.29 to -29.29 |" in cut
+    assert "| never cut | √2 | 4 of 4 | 4 of 4 | 4 of 4 | 0.00 | 1 of 1 | 0.00 to 0.00 |" in kept
+    assert "| cut | √2 | 4 of 4 | 4 of 4 | 4 of 4 | 0.00 | 0 of 1 | -29.29 to -29.29 |" in cut
     assert "| never cut, as built |" in scipy
     assert path_times(rows, cases).count("\n") == 2 + len(rows)
     table = library_table([*present, Absent()], missing)

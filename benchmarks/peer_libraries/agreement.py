@@ -64,7 +64,7 @@ class Judged(NamedTuple):
     # By the peer's own cost of a diagonal, and by the true one, under its rule.
     optimal: bool
     shortest: bool
-    # Over the shortest under its rule, and over the published length, in per cent.
+    # Over the shortest under its rule, and over the published length, in per cent; NaN without a path or a published length.
     excess: float
     over_published: float
 
@@ -81,7 +81,7 @@ def judge(peer: PathPeer, moves: Moves, path: np.ndarray, start: Cell, goal: Cel
         found.cost(peer.diagonal) <= own * (1 + _ROUNDING),
         excess <= _ROUNDING,
         100 * excess,
-        100 * (found.cost() / published - 1) if abs(found.cost() - published) > PUBLISHED else 0.0,
+        0.0 if abs(found.cost() - published) <= PUBLISHED else 100 * (found.cost() / published - 1),
     )
 
 

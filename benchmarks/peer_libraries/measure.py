@@ -41,7 +41,7 @@ def seconds_of(call: Callable[[], Any]) -> tuple[float, Any]:
 
 
 class Case(NamedTuple):
-    """A map, and queries (start, goal, published length)."""
+    """A map, and queries (start, goal, published length), NaN where none is published."""
 
     name: str
     grid: OccupancyGrid
@@ -60,6 +60,16 @@ def cases_of(folder: Path, names: Sequence[str], n_queries: int) -> list[Case]:
         queries = [(queries[k].start, queries[k].goal, queries[k].optimal_length) for k in chosen.tolist()]
         cases.append(Case(name, grid, queries))
     return cases
+
+
+def dense_case(n_queries: int) -> Case:
+    """Return a seeded map with a third of its cells occupied, where ways that differ cost nearly the same."""
+    rng = np.random.default_rng(1)
+    grid = OccupancyGrid(rng.random((64, 64)) < 1 / 3)
+    # Queries within the largest region, in which all corner rules find paths.
+    inside = np.argwhere(grid.regions == np.argmax(np.bincount(grid.regions[~grid.occupied])))
+    ends = inside[rng.choice(len(inside), (n_queries, 2), replace=False)][:, :, ::-1].tolist()
+    return Case("dense", grid, [(tuple(start), tuple(goal), np.nan) for start, goal in ends])
 
 
 class PathRow(NamedTuple):
