@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import os
-import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +25,7 @@ from pymoo_gridpath.cli.query import add_query, ends, grown
 from pymoo_gridpath.cli.resume import add_resume, read_stored, said, write_populations
 from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
+from pymoo_gridpath.interrupt import StopOnCtrlC
 from pymoo_gridpath.progress import Progress, say
 
 if TYPE_CHECKING:
@@ -216,7 +216,7 @@ def _carry_out(problem, name: str, spec, algorithm, arguments, source: dict, unk
     print(f"{visible(grid.name)}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
     if unknown is not None:
         print(f"unknown: {unknown}", flush=True)
-    with _StopOnCtrlC() as stop:
+    with StopOnCtrlC() as stop:
         results = [] if standing else _search(problem, name, spec, algorithm, arguments, stop)
         stop.searching = False
         if results and not any(len(result.pop) for result in results):
@@ -331,7 +331,7 @@ def _algorithm(name: str, spec, problem, arguments, start=None, **more):
     return make_algorithm(name, problem, **given)
 
 
-def _search(problem, name: str, spec, algorithm, arguments, stop: _StopOnCtrlC) -> list:
+def _search(problem, name: str, spec, algorithm, arguments, stop: StopOnCtrlC) -> list:
     """Return the Results of the runs, with progress shown, ended early if Ctrl-C asks for it."""
     from pymoo_gridpath.algorithms import minimize_runs
     from pymoo_gridpath.convergence import ConvergenceRecorder
@@ -399,28 +399,3 @@ def _make_directory(path: Path) -> None:
         raise GridPathError(f"the output directory {path} cannot be made: {error.strerror or error}") from None
     if not writable:
         raise GridPathError(f"the output directory {path} cannot be written to")
-
-
-class _StopOnCtrlC:
-    """While open, the first Ctrl-C asks the search to stop after the generation under way, the second ends it at once.
-
-    Once ``searching`` is False, Ctrl-C only makes a note, so that what was found is written.
-    """
-
-    def __init__(self):
-        self.requested = False
-        self.searching = True
-
-    def __enter__(self):
-        self._before = signal.signal(signal.SIGINT, self._request)
-        return self
-
-    def __exit__(self, *exception):
-        signal.signal(signal.SIGINT, self._before)
-
-    def _request(self, number, frame):
-        if self.requested and self.searching:
-            raise KeyboardInterrupt
-        if not self.requested:
-            print("\nstopping, and keeping what was found; Ctrl-C again ends at once and loses it", file=sys.stderr)
-        self.requested = True

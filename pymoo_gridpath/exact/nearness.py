@@ -48,8 +48,17 @@ class Certificate:
     share: float
 
     def __str__(self):
+        return self.said(self._telling)
+
+    @property
+    def short(self) -> str:
+        """The same in few words: "1.23 %", or "3.4 % of range"."""
+        return _percent(getattr(self, self._telling)) + (" of range" if self._telling == "share" else "")
+
+    @property
+    def _telling(self) -> str:
         # A factor of two and more says little.
-        return self.said("epsilon" if self.epsilon <= 1.0 or self.epsilon <= self.share else "share")
+        return "epsilon" if self.epsilon <= 1.0 or self.epsilon <= self.share else "share"
 
     def said(self, name: str) -> str:
         """Return one of the two in words."""

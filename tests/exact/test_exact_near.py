@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from exact_fronts import Cost, front_of, queries_of, random_grid
+from exact_fronts import Cost, front_of, holds, queries_of, random_grid, whole_costs
 from pymoo.optimize import minimize
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
@@ -17,23 +17,6 @@ from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Lines, certificate, 
 from pymoo_gridpath.representations import CellSequence
 
 ASKED = [{name: value} for name in ("epsilon", "share") for value in (0.001, 0.05, 0.4, 1.0)]
-
-
-def holds(certified: Certificate, F, front) -> bool:
-    """Whether a certificate is true of points with whole numbers, by its definition."""
-    F, front = ([[int(value) for value in row] for row in np.asarray(rows)] for rows in (F, front))
-    factor, share = 1 + Fraction(min(certified.epsilon, 1e30)), Fraction(certified.share)
-    ranges = [max(column) - min(column) for column in zip(*front, strict=True)]
-    return all(
-        any(all(a <= factor * b for a, b in zip(p, q, strict=True)) for p in F)
-        and any(all(a <= b + share * extent for a, b, extent in zip(p, q, ranges, strict=True)) for p in F)
-        for q in front
-    )
-
-
-def whole_costs(shape, seed, names="ab"):
-    draw = np.random.default_rng(seed)
-    return {name: draw.integers(0, int(draw.choice([2, 6, 1000])), shape) for name in names}
 
 
 def test_certificates_are_true_of_all_paths():
