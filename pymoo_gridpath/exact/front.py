@@ -12,7 +12,7 @@ from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
 from pymoo_gridpath.exact.levels import Known, cell_levels, over_levels
-from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate
+from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, together
 from pymoo_gridpath.exact.parts import Part, parts_of, refuse
 from pymoo_gridpath.exact.steps import Steps, last, mapped
 from pymoo_gridpath.exact.timed import exact_timed_front
@@ -21,7 +21,7 @@ from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.representations.base import max_cells, representation_of
 
-# Lengths of paths across more cells could overflow.
+# Lengths of paths that visit more cells could overflow.
 _MOST_CELLS = 2**24
 
 # By which share of the largest a score may differ from the sum that was minimised.
@@ -138,10 +138,10 @@ def better_fronts(
     if len(summed) > 3:
         besides = " besides those of which the worst cell decides" if worst else ""
         raise CapabilityError(f"the problem has {len(summed)} objectives{besides}, expected at most 3 for an exact front")
-    if moves.n_cells >= _MOST_CELLS:
-        raise CapabilityError(
-            f"{moves.n_cells:,} cells of the grid are to be searched, expected fewer than {_MOST_CELLS:,} for an exact front"
-        )
+    if moves.n_cells > _MOST_CELLS:
+        n_cells = np.count_nonzero(moves.legal)
+        if n_cells > _MOST_CELLS:
+            raise CapabilityError(f"paths may visit {n_cells:,} cells, expected at most {_MOST_CELLS:,} for an exact front")
     if len(summed) == 3:
         refuse(allowance, "three objectives that add up")
     if problem.obstacles == "limit":
@@ -228,10 +228,7 @@ def _said(certified: Certificate | None, allowance: Allowance) -> str:
 
 def _proven(parts: list[Part]) -> Certificate | None:
     """Return what is proven of all parts together: of each, as a part has no larger ranges than the whole."""
-    each = [part.certified for part in parts]
-    if None in each:
-        return None
-    return Certificate(*(max((getattr(one, name) for one in each), default=0.0) for name in ("epsilon", "share")))
+    return together([part.certified for part in parts])
 
 
 def _kinds(problem) -> tuple[list[int], list[int]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
@@ -69,6 +70,14 @@ class Certificate:
 
 #: Of the whole front.
 WHOLE = Certificate(0.0, 0.0)
+
+
+def together(certificates: Sequence[Certificate | None]) -> Certificate | None:
+    """Return what is certified of all of several, None if nothing is of one of them."""
+    if None in certificates:
+        return None
+    worst = (max((getattr(one, name) for one in certificates), default=0.0) for name in ("epsilon", "share"))
+    return Certificate(*worst)
 
 
 def _percent(share: float) -> str:

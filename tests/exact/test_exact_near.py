@@ -148,6 +148,20 @@ def test_what_cannot_be_certified_is_refused_and_has_no_certificate(problem, wha
     assert cut.certified is None and "within" not in cut.message
 
 
+def test_grids_are_refused_by_the_cells_that_paths_may_visit(monkeypatch):
+    grid = random_grid(8, 1)
+    problem = GridPathProblem(grid, (0, 0), (7, 7), "cells")
+    front = exact_front(problem).F
+    n_cells = np.count_nonzero(problem.representation.moves.legal)
+    assert n_cells < 64
+    for most in (n_cells, n_cells - 1):
+        monkeypatch.setattr("pymoo_gridpath.exact.front._MOST_CELLS", most)
+        if most == n_cells:
+            np.testing.assert_array_equal(exact_front(problem).F, front)
+    with pytest.raises(CapabilityError, match=f"paths may visit {n_cells} cells, expected at most {n_cells - 1} for an exact"):
+        exact_front(problem)
+
+
 @pytest.mark.parametrize("value", [0, -0.1, 1.5, np.nan, "2%", True])
 def test_numbers_out_of_range_are_refused(value):
     problem = GridPathProblem(random_grid(8, 1), (0, 0), (7, 7), "cells")
