@@ -265,10 +265,8 @@ def test_the_gist_of_a_traceback_is_its_last_line():
 
 def test_what_is_certified_of_exact_fronts_stands_in_the_tables(tmp_path):
     problem = ProblemSpec(grid=random_dense_grid(40, 0.2, 3), start=(0, 0), goal=(39, 39), representation="cells")
-    near, cut = (
-        {"algorithm": "exact", "name": label, "parameters": more}
-        for label, more in (("near", {"epsilon": 0.05}), ("cut", {"max_labels": 300}))
-    )
+    near = {"algorithm": "exact", "name": "near", "parameters": {"epsilon": 0.05}}
+    cut = {"algorithm": "exact", "name": "cut", "max_labels": 300}
     searched = {"algorithm": "NSGA2", "name": "searched", "pop_size": 10}
     study = Study(problems=[problem], algorithms=[near, cut, searched], seeds=1, budget={"generations": 2})
     run_study(study, tmp_path / "store")
