@@ -226,9 +226,9 @@ def _carry_out(problem, name: str, spec, algorithm, arguments, source: dict, unk
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
-    elif results and results[0].success is False:
+    if results and results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
-    elif results and (arguments.epsilon or arguments.share):
+    elif results and not stop.requested and (arguments.epsilon or arguments.share):
         print(f"{name}: {results[0].message}")
     print(trade_off.table(max_rows=MAX_ROWS))
     if arguments.show:
@@ -340,14 +340,21 @@ def _search(problem, name: str, spec, algorithm, arguments, stop: StopOnCtrlC) -
         progress.update(run, algorithm, _n_legal)
         return stop.requested
 
+    so_far: list[str] = []
+
+    def keep(run, planner):
+        so_far[:] = [planner.message]
+
     def watch(meter):
-        progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
+        progress.note(", ".join([*so_far, f"{meter.n_labels:,} labels", f"{meter.elapsed:.0f} s"]))
+        if stop.requested:
+            meter.message = "stopped by Ctrl-C"
         return stop.requested
 
     with Progress(arguments.runs, arguments.generations) as progress:
         if isinstance(spec, type):
             planner = _algorithm(name, spec, problem, arguments, watch=watch)
-            return minimize_runs(problem, planner, n_runs=arguments.runs, seed=arguments.seed)
+            return minimize_runs(problem, planner, n_runs=arguments.runs, seed=arguments.seed, observe=keep)
         termination = ("n_gen", arguments.generations)
         if not isinstance(algorithm, list):
             return minimize_runs(
