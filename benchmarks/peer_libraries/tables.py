@@ -39,7 +39,7 @@ def _diagonal(cost: float) -> str:
 
 
 def _two_digits(value: float) -> str:
-    """Return a number rounded to two digits, never as a power of ten."""
+    """Return a number rounded to two digits, 143.2 as 140."""
     return f"{float(f'{value:.2g}'):.10g}"
 
 
