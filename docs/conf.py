@@ -69,6 +69,7 @@ PLAIN_PAGES = (
     "companions",
     "planners",
     "papers",
+    "suites",
     "peers",
     "maps",
     "explorer",
