@@ -10,7 +10,7 @@ path, so 5,440 fronts; with ``--backtracking`` those of the 288 instances where 
 with the fronts of all five objectives together; what is not dominated of some of them in it is the front of these. Points that
 differ by less than 1e-5 are ties; published values are rounded to that, ours as well then, and may be off by 1e-4.
 
-The first takes a minute of processor time, the second some minutes, the last half a minute.
+The first takes a minute of processor time, the second five minutes, the last half a minute.
 """
 
 from __future__ import annotations

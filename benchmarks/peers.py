@@ -83,7 +83,10 @@ def main() -> None:
         problem = ahmed_deb_2013(grid, (0, 0), (size - 1, size - 1)).problem
         found = measure_searches(searches, problem, arguments.pop_size, arguments.n_gen, arguments.seeds, arguments.patience)
         n_eval = f"{arguments.pop_size} members, {arguments.n_gen} generations"
-        texts += [f"### NSGA-II, {size} x {size} cells, {problem.n_var} genes, {n_eval}", search_table(found)]
+        texts += [
+            f"### NSGA-II, {size} x {size} cells, p0 = {arguments.p0:g}, {problem.n_var} genes, {n_eval}",
+            search_table(found),
+        ]
         # What was slow is slower on larger maps.
         slow = {row.peer.label for row in found if row.runs[0][0] > arguments.patience}
         searches = [peer for peer in searches if peer.label not in slow]

@@ -38,6 +38,11 @@ def _diagonal(cost: float) -> str:
     return "√2" if cost == SQRT2 else f"{cost:.4g}"
 
 
+def _two_digits(value: float) -> str:
+    """Return a number rounded to two digits, 143.2 as 140."""
+    return f"{float(f'{value:.2g}'):.10g}"
+
+
 def _share(values: np.ndarray) -> str:
     return f"{int(values.sum())} of {len(values)}"
 
@@ -79,7 +84,7 @@ def path_times(rows: Sequence[PathRow], cases: Sequence[Case]) -> str:
         line = [row.peer.label, _RULES[row.rule]]
         for case in cases:
             seconds = 1e3 * np.array(row.seconds[case.name])
-            line += [f"{1e3 * row.set_up[case.name]:.2g}", f"{np.median(seconds):.2g}"]
+            line += [_two_digits(1e3 * row.set_up[case.name]), _two_digits(float(np.median(seconds)))]
         lines.append(line)
     head = [f"{case.name}: {what}, ms" for case in cases for what in ("set-up", "query")]
     return markdown(("Library and call", "Corners", *head), lines, left=2)
