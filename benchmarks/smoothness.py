@@ -15,7 +15,7 @@ from __future__ import annotations
 import argparse
 import os
 from concurrent.futures import ProcessPoolExecutor
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 # One thread for each process: the arrays are small, and threads of the linear algebra would only get in each other's way.
@@ -48,12 +48,16 @@ def algorithm_of(row: str, problem, pop_size: int, operators: dict, band: float)
     return make_algorithm(name, problem, pop_size, operators=operators, **options)
 
 
+@cache
+def problem_of(size: int, p0: float, seed: int) -> GridPathProblem:
+    """Return the problem of a grid, which remembers its exact front."""
+    grid = random_dense_grid(size, p0, seed)
+    return GridPathProblem(grid, (0, 0), (size - 1, size - 1), "integer", ("length", Vulnerability(variance=0.5)))
+
+
 def run(seed: int, row: str, arguments) -> list[float]:
     """Return the columns of one run."""
-    size = arguments.size
-    grid = random_dense_grid(size, arguments.p0, seed if arguments.grids == "each" else 1)
-    objectives = ("length", Vulnerability(variance=0.5))
-    problem = GridPathProblem(grid, (0, 0), (size - 1, size - 1), "integer", objectives)
+    problem = problem_of(arguments.size, arguments.p0, seed if arguments.grids == "each" else 1)
     exact: Any = problem.pareto_front(max_seconds=600.0)
     operators = OPERATORS[arguments.operators](problem)
     algorithm = algorithm_of(row, problem, arguments.pop_size, operators, arguments.band)
@@ -87,7 +91,8 @@ def main() -> None:
     arguments = parser.parse_args()
     print(
         f"{arguments.size} x {arguments.size}, p0 = {arguments.p0:g}, {arguments.grids} grid, {arguments.operators} operators, "
-        f"population {arguments.pop_size}, {arguments.generations} generations, {arguments.seeds} seeds, band {arguments.band:g}"
+        f"population {arguments.pop_size}, {arguments.generations} generations, {arguments.seeds} seeds, "
+        f"band {arguments.band:g}"
     )
     print(f"{'':10} |  {'front':20} |  {'front with a band':20} | last population")
     print(f"{'':10} |  {COLUMNS}")

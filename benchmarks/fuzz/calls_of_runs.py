@@ -192,7 +192,10 @@ def _results(w: World) -> dict[str, Call]:
         "ConvergenceRecorder.hypervolume": (w.recorder.hypervolume, {"reference_point": np.array([30.0, 30.0])}),
         "common_reference_point": (convergence.common_reference_point, {"recorders": [w.recorder], "margin": 0.1}),
         "TradeOffSet": (decision.TradeOffSet, {"problem": w.problem, "X": w.legal_rows, "meta": {"a": 1}, "band": 0.01}),
-        "TradeOffSet.from_genes": (decision.TradeOffSet.from_genes, {"problem": w.problem, "X": w.legal_rows, **settings, "band": 0.01}),
+        "TradeOffSet.from_genes": (
+            decision.TradeOffSet.from_genes,
+            {"problem": w.problem, "X": w.legal_rows, **settings, "band": 0.01},
+        ),
         "TradeOffSet.from_results": (decision.TradeOffSet.from_results, {"results": [w.result], **settings, "band": 0.01}),
         "TradeOffSet.index": (trade_off.index, {"name": "knee"}),
         "TradeOffSet.names": (trade_off.names, {"index": 0}),

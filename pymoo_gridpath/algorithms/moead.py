@@ -60,9 +60,9 @@ class SmoothMOEAD(MOEAD):
     batch_size : int, optional
         Children that are made and evaluated at once, see Notes. By default all of a generation; 1 is the textbook's MOEA/D.
     band : float, optional
-        The width of the steps that the smoothness tie-break takes objectives in, as a share of their range on the current front,
-        at most 0.5, or of 1 if they are not scaled: by default 0.01. Paths may be as much worse in an objective as a step is wide, if they turn less. 0 takes
-        objectives as they are, and so does ``smoothness=False``.
+        The width of the steps that the smoothness tie-break takes objectives in, as a share of their range on the current
+        front, or of 1 if they are not scaled: at most 0.5, by default 0.01. Paths may be worse in an objective by as much as a
+        step is wide, if they turn less. 0 takes objectives as they are, and so does ``smoothness=False``.
     **kwargs
         As for pymoo's `MOEAD`: ``n_neighbors``, ``decomposition``, ``prob_neighbor_mating``, ``sampling``, ``crossover``,
         ``mutation``, ``repair``, ``output`` and others.
@@ -124,7 +124,9 @@ class SmoothMOEAD(MOEAD):
             if value is not None:
                 check_whole("MOEAD", name, value)
         if band is not None and not smoothness:
-            raise CapabilityError(f"band is {checks.shown(band)} and smoothness is False, expected no band: ties are not broken")
+            raise CapabilityError(
+                f"band is {checks.shown(band)} and smoothness is False, expected no band: ties are not broken"
+            )
         super().__init__(ref_dirs=ref_dirs, **kwargs)
         self.smoothness = smoothness
         self.band = band_of(BAND if band is None else band, CapabilityError) if smoothness else 0.0

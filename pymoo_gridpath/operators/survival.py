@@ -98,7 +98,9 @@ class RankAndSmoothness(ArraySurvival):
         self.nds = NonDominatedSorting()
         self.distinct, self.band = checks.flag("distinct", distinct), band_of(band)
         if self.distinct and self.band:
-            raise GridPathError(f"distinct is True and band is {band}, expected one of the two: with a band, points are distinct")
+            raise GridPathError(
+                f"distinct is True and band is {band}, expected one of the two: with a band, points are distinct"
+            )
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
         F, turn = pop.get("F").astype(float), turns_of(pop, type(self).__name__)

@@ -89,7 +89,7 @@ def test_bands_are_checked(make_problem):
     for band in (-0.1, 0.6, "wide", float("nan")):
         with pytest.raises(CapabilityError, match=r"^band is .*, expected a share from 0 to 0.5"):
             SmoothMOEAD(np.eye(2), band=band)
-    with pytest.raises(CapabilityError, match="band is 0.1 and smoothness is False, expected no band"):
+    with pytest.raises(CapabilityError, match=r"band is 0\.1 and smoothness is False, expected no band"):
         make_algorithm("MOEAD", make_problem(), 10, smoothness=False, band=0.1)
     assert make_algorithm("MOEAD", make_problem(), 10, smoothness=False).band == 0
     assert make_algorithm("MOEAD", make_problem(), 10).band == 0.01

@@ -50,7 +50,7 @@ def test_with_a_band_the_smoothest_of_each_step_is_kept(band):
     assert dict(zip(found, kept.measures["turn"], strict=True)) == least and len(found) == len(front)
     assert kept.F[:, 0].tolist() == sorted(kept.F[:, 0]) and kept.feasible
     assert kept.meta["settings"]["band"] == band and "band" not in every.meta["settings"]
-    with pytest.raises(GridPathError, match="band is 2, expected a share from 0 to 0.5"):
+    with pytest.raises(GridPathError, match=r"band is 2, expected a share from 0 to 0\.5"):
         TradeOffSet(problem, X, band=2)
 
 
