@@ -268,6 +268,6 @@ class SmoothMOEAD(MOEAD):
         return (cv < neighbors_cv) | ((cv == neighbors_cv) & wins)
 
 
-def _compare(F: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _compare(F: np.ndarray, others: np.ndarray) -> tuple[Any, Any]:
     """Return whether F is no worse than others in any objective, and whether it is no better."""
     return (others >= F).all(axis=-1), (others <= F).all(axis=-1)
