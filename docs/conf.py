@@ -102,10 +102,13 @@ def find_by_last_name(app, env, node, contnode):
     if node.get("refdomain") != "py" or not target:
         return None
     objects = env.get_domain("py").objects
-    found = {(entry.docname, entry.node_id) for name, entry in objects.items() if name.endswith(f".{target}")}
+    named = [entry for name, entry in objects.items() if name.endswith(f".{target}")]
+    # A function goes before methods of its name.
+    named = [entry for entry in named if entry.objtype not in ("method", "attribute", "property")] or named
+    found = {(entry.docname, entry.node_id) for entry in named}
     if len(found) != 1:
         # In a docstring it may be code; on a page it was meant as a link.
-        if env.doc2path(node["refdoc"]).endswith(".md"):
+        if env.doc2path(node["refdoc"]).endswith(".md") and "<autosummary>" not in str(node.source):
             what = "nothing" if not found else f"{len(found)} things"
             logging.getLogger(__name__).warning("%s is the name of %s", target, what, location=node)
         return None
