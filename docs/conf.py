@@ -27,7 +27,8 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.extlinks",
 ]
-exclude_patterns = ["_build", "jupyter_execute", "README.md"]
+# What other pages include is no page.
+exclude_patterns = ["_build", "jupyter_execute", "README.md", "peers_measured.md"]
 templates_path = ["_templates"]
 suppress_warnings: list[str] = []
 
@@ -74,6 +75,8 @@ PLAIN_PAGES = (
     "exact",
     "companions",
     "papers",
+    "suites",
+    "peers",
     "maps",
     "explorer",
     "command_line",
