@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from importlib.metadata import version as version_of
+from pathlib import Path
 
+from sphinx.errors import ExtensionError
+from sphinx.util import logging
 from sphinx.util.nodes import make_refnode
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import finish
 
 project = "pymoo_gridpath"
 author = "The pymoo_gridpath developers"
@@ -18,6 +25,7 @@ extensions = [
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
+    "sphinx.ext.extlinks",
 ]
 # What other pages include is no page.
 exclude_patterns = ["_build", "jupyter_execute", "README.md", "peers_measured.md"]
@@ -60,21 +68,19 @@ html_show_sourcelink = False
 html_copy_source = False
 PLAIN_PAGES = (
     "index",
-    "tutorial",
-    "robot",
-    "own_cost",
+    "tutorials",
+    *finish.TUTORIALS,
     "method",
     "algorithms",
     "exact",
     "companions",
-    "planners",
     "papers",
     "suites",
     "peers",
     "maps",
     "explorer",
     "command_line",
-    "extend",
+    "glossary",
     "internals",
 )
 html_sidebars = {page: [] for page in PLAIN_PAGES}
@@ -87,6 +93,9 @@ html_theme_options = {
     "footer_end": [],
 }
 
+# pymoo's own pages: {pymoo}`NSGA-II <algorithms/moo/nsga2.html>`. Addresses, not an inventory, which would need the network.
+extlinks = {"pymoo": ("https://pymoo.org/%s", "%s")}
+
 # -- links ----------------------------------------------------------------------------------------------------------------
 
 
@@ -96,11 +105,29 @@ def find_by_last_name(app, env, node, contnode):
     if node.get("refdomain") != "py" or not target:
         return None
     objects = env.get_domain("py").objects
-    found = {(entry.docname, entry.node_id) for name, entry in objects.items() if name.endswith(f".{target}")}
+    named = [entry for name, entry in objects.items() if name.endswith(f".{target}")]
+    # A function goes before methods of its name.
+    named = [entry for entry in named if entry.objtype not in ("method", "attribute", "property")] or named
+    found = {(entry.docname, entry.node_id) for entry in named}
     if len(found) != 1:
+        # In a docstring it may be code; on a page it was meant as a link.
+        if env.doc2path(node["refdoc"]).endswith(".md") and "<autosummary>" not in str(node.source):
+            what = "nothing" if not found else f"{len(found)} things"
+            logging.getLogger(__name__).warning("%s is the name of %s", target, what, location=node)
         return None
     docname, anchor = found.pop()
     return make_refnode(app.builder, node["refdoc"], docname, anchor, contnode, target)
+
+
+def finish_site(app, error):
+    """Draw the thumbnails of the gallery and check what Sphinx does not: links as they stand in the pages, and their length."""
+    if error or app.builder.name != "html":
+        return
+    folder = Path(app.outdir).resolve()
+    pages = finish.read_pages(folder)
+    wrong = finish.draw_thumbnails(folder, pages) + finish.broken_links(folder, pages) + finish.long_tutorials(Path(app.srcdir))
+    if wrong:
+        raise ExtensionError("\n".join(["the site is not as it should be:", *wrong]))
 
 
 def clear_stubs(app, config):
@@ -122,3 +149,4 @@ def setup(app):
     app.connect("config-inited", clear_stubs)
     app.connect("config-inited", set_up_kernels)
     app.connect("missing-reference", find_by_last_name)
+    app.connect("build-finished", finish_site)

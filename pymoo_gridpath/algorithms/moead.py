@@ -14,25 +14,31 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms.arguments import check_whole
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.operators.array_population import ArrayPopulation
+from pymoo_gridpath.operators.bands import band_of, boxes
 from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection, mates_on_arrays
 from pymoo_gridpath.operators.parameters import number
 from pymoo_gridpath.operators.survival import turns_of
 
 #: Decomposed values that differ by no more than this share of 1 + their size are a tie.
 TIE = 1e-9
+#: How wide the steps are that the smoothness tie-break takes objectives in, as a share of their range, unless told.
+BAND = 0.01
 
 
 class SmoothMOEAD(MOEAD):
     """MOEA/D with constraints, scaled objectives and a smoothness tie-break.
 
-    A child takes the place of a neighbour if, in this order,
+    Objectives count in steps of a `band`, a share of their range. A child takes the place of a neighbour if, in this order,
 
     1. its constraint violation is smaller;
     2. of equal violations, its decomposed value in the neighbour's direction is smaller;
-    3. of equal values (to `TIE`), it dominates the neighbour, or neither dominates the other and its total turn is smaller.
+    3. of equal values, it dominates the neighbour;
+    4. where neither dominates the other, its total turn is smaller;
+    5. of equal turns on the same steps, it dominates the neighbour by less than a step.
 
-    The third step is the smoothness tie-break. Paths of the same length and vulnerability tie in every direction, so the
-    smoothest of them is kept; and so do paths that differ only in the objective that does not decide a Chebyshev value, where
+    The fourth step is the smoothness tie-break. Paths on the same steps of length and vulnerability tie in every direction, so
+    the smoothest of them is kept. Without a band it acts only between paths of the same objectives, and on a map with obstacles
+    there are hardly two such. Paths also tie which differ only in the objective that does not decide a Chebyshev value; there
     dominance goes first lest smoothness cost an objective.
 
     On a grid few objective vectors exist, and one good child would soon fill all neighbourhoods with copies of itself. Hence a
@@ -53,6 +59,10 @@ class SmoothMOEAD(MOEAD):
         Most neighbours that a child may replace; pymoo's MOEA/D has no limit.
     batch_size : int, optional
         Children that are made and evaluated at once, see Notes. By default all of a generation; 1 is the textbook's MOEA/D.
+    band : float, optional
+        The width of the steps that the smoothness tie-break takes objectives in, as a share of their range on the current
+        front, or of 1 if they are not scaled: at most 0.5, by default 0.01. Paths may be worse in an objective by as much as a
+        step is wide, if they turn less. 0 takes objectives as they are, and so does ``smoothness=False``.
     **kwargs
         As for pymoo's `MOEAD`: ``n_neighbors``, ``decomposition``, ``prob_neighbor_mating``, ``sampling``, ``crossover``,
         ``mutation``, ``repair``, ``output`` and others.
@@ -60,8 +70,9 @@ class SmoothMOEAD(MOEAD):
     Raises
     ------
     CapabilityError
-        If ref_dirs has fewer than two rows, n_replace or batch_size is not positive, or, when the run begins, ref_dirs has
-        another number of columns than the problem objectives.
+        If ref_dirs has fewer than two rows, n_replace or batch_size is not positive, band is out of its range or given without
+        the tie-break that it is for, or, when the run begins, ref_dirs has another number of columns than the problem
+        objectives.
 
     Notes
     -----
@@ -101,6 +112,7 @@ class SmoothMOEAD(MOEAD):
         normalize: bool = True,
         n_replace: int = 5,
         batch_size: int | None = None,
+        band: float | None = None,
         **kwargs,
     ):
         expected = "two or more reference directions as rows of finite numbers"
@@ -111,8 +123,13 @@ class SmoothMOEAD(MOEAD):
         for name, value in given.items():
             if value is not None:
                 check_whole("MOEAD", name, value)
+        if band is not None and not smoothness:
+            raise CapabilityError(
+                f"band is {checks.shown(band)} and smoothness is False, expected no band: ties are not broken"
+            )
         super().__init__(ref_dirs=ref_dirs, **kwargs)
         self.smoothness = smoothness
+        self.band = band_of(BAND if band is None else band, CapabilityError) if smoothness else 0.0
         self.normalize = normalize
         self.n_replace = n_replace
         self.batch_size = len(ref_dirs) if batch_size is None else batch_size
@@ -189,24 +206,30 @@ class SmoothMOEAD(MOEAD):
             span = F[is_nondominated(F, keep_weakly=True)].max(axis=0) - self.ideal
             self.span[span > 0] = span[span > 0]
 
-    def _decompose(self, F: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """Return the decomposed value of each row of objectives in the direction of the same row of weights."""
-        scaled = (F - self.ideal) / self.span
-        return self.decomposition.do(scaled, weights=weights, _type="one_to_one", ideal_point=np.zeros(F.shape[1]))
+    def _scale(self, F: np.ndarray) -> np.ndarray:
+        """Return objectives scaled to the range of the front, in steps of the band."""
+        if self.band:
+            return boxes(F, self.ideal, self.span, self.band) * self.band
+        return (F - self.ideal) / self.span
+
+    def _decompose(self, scaled: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """Return the decomposed value of each row of scaled objectives in the direction of the same row of weights."""
+        return self.decomposition.do(scaled, weights=weights, _type="one_to_one", ideal_point=np.zeros(scaled.shape[1]))
 
     def _replace(self, subproblems: np.ndarray, off) -> None:
         """Let children, one after another, take the places of neighbours of their subproblems."""
         X, F, cv, turn = self._read(off)
         self._move_ideal(F, cv <= 0.0)
+        scaled, self._scaled = self._scale(F), self._scale(self._F)
         neighborhoods = self.neighbors[subproblems]
-        values = self._decompose(self._F, self.ref_dirs)
+        values = self._decompose(self._scaled, self.ref_dirs)
         directions = self.ref_dirs[neighborhoods].reshape(-1, F.shape[1])
-        offered = self._decompose(F.repeat(neighborhoods.shape[1], axis=0), directions).reshape(neighborhoods.shape)
-        beats = self._beats(neighborhoods, offered, values, F[:, None], cv[:, None], turn[:, None])
+        offered = self._decompose(scaled.repeat(neighborhoods.shape[1], axis=0), directions).reshape(neighborhoods.shape)
+        beats = self._beats(neighborhoods, offered, values, F[:, None], scaled[:, None], cv[:, None], turn[:, None])
         replaced = np.zeros(len(values), dtype=bool)
         for i, near in enumerate(neighborhoods):
             if replaced[near].any():
-                beats[i] = self._beats(near, offered[i], values, F[i], cv[i], turn[i])
+                beats[i] = self._beats(near, offered[i], values, F[i], scaled[i], cv[i], turn[i])
             beaten = np.flatnonzero(beats[i])
             if len(beaten) == 0 or (self._X[near] == X[i]).all(axis=1).any():
                 continue
@@ -215,8 +238,9 @@ class SmoothMOEAD(MOEAD):
             places = near[beaten]
             self.pop[places], values[places], replaced[places] = off[i], offered[i, beaten], True
             self._X[places], self._F[places], self._cv[places], self._turn[places] = X[i], F[i], cv[i], turn[i]
+            self._scaled[places] = scaled[i]
 
-    def _beats(self, near, offered, values, F, cv, turn) -> np.ndarray:
+    def _beats(self, near, offered, values, F, scaled, cv, turn) -> np.ndarray:
         """Return which of its neighbours a child beats, bool, the shape of ``near``; for many children, add an axis to all.
 
         Parameters
@@ -226,14 +250,24 @@ class SmoothMOEAD(MOEAD):
             Decomposed values of the child in the directions of the neighbours.
         values : numpy.ndarray, shape (n_directions,)
             Decomposed value of each member of the population in its own direction.
-        F : numpy.ndarray, shape (n_obj,)
+        F, scaled : numpy.ndarray, shape (n_obj,)
+            Objectives as they are, and scaled.
         cv, turn : float
         """
         old, neighbors_cv = values[near], self._cv[near]
         gain, slack = old - offered, TIE * (1.0 + np.abs(old))
         wins, tie = gain > slack, np.abs(gain) <= slack
         if tie.any():
-            neighbors_F = self._F[near]
-            no_worse, no_better = (neighbors_F >= F).all(axis=-1), (neighbors_F <= F).all(axis=-1)
-            wins |= tie & ((no_worse & ~no_better) | ((no_worse | ~no_better) & (turn < self._turn[near])))
+            neighbors_turn = self._turn[near]
+            no_worse, no_better = _compare(scaled, self._scaled[near])
+            better = (no_worse & ~no_better) | ((no_worse == no_better) & (turn < neighbors_turn))
+            if self.band:
+                exactly_no_worse, exactly_no_better = _compare(F, self._F[near])
+                better |= no_worse & no_better & (turn == neighbors_turn) & exactly_no_worse & ~exactly_no_better
+            wins |= tie & better
         return (cv < neighbors_cv) | ((cv == neighbors_cv) & wins)
+
+
+def _compare(F: np.ndarray, others: np.ndarray) -> tuple[Any, Any]:
+    """Return whether F is no worse than others in any objective, and whether it is no better."""
+    return (others >= F).all(axis=-1), (others <= F).all(axis=-1)

@@ -6,6 +6,7 @@ import warnings
 from typing import Any
 
 import numpy as np
+from moocore import is_nondominated
 from pymoo.core.survival import Survival
 from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 from pymoo.operators.survival.rank_and_crowding.metrics import FunctionalDiversity, calc_crowding_distance
@@ -13,7 +14,9 @@ from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 from pymoo.util.randomized_argsort import randomized_argsort
 
 from pymoo_gridpath import checks
+from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators.array_population import ArrayPopulation
+from pymoo_gridpath.operators.bands import band_of, boxes, range_of_front
 from pymoo_gridpath.registry import OPERATORS
 
 
@@ -71,23 +74,38 @@ class RankAndSmoothness(ArraySurvival):
         `path_operators`, soon fill the population with non-dominated paths, and those that turn little would push out the
         others, ends of the front included. If True, of paths with equal objectives all but the smoothest come after all other
         paths of their front, with a crowding distance of 0, and among the others the crowding distance decides before turn.
+    band : float, default 0
+        From which difference on objectives are not the same, as a share of their range on the front of each generation, at most
+        0.5. On a map with obstacles hardly two paths have the same objectives, so that the rank decides on nearly all, and turn
+        on none. With a band, objectives count in steps of that width: paths in one box of steps are one point, which the
+        smoothest of them stands for. It is ranked by its box; the others as if it dominated them. The result then has one path
+        a box, and its objectives are up to one step worse than the best that were found. 0.01 is a good first choice; 0 is the
+        paper's rule.
+
+    Raises
+    ------
+    GridPathError
+        If an argument is out of its range, or both distinct and a band are given: with a band, points are distinct.
 
     References
     ----------
-    Ahmed and Deb (2013), section 5.1.
+    Ahmed and Deb (2013), section 5.1. The boxes are those of M. Laumanns, L. Thiele, K. Deb and E. Zitzler, "Combining
+    convergence and diversity in evolutionary multiobjective optimization", Evolutionary Computation 10(3), 2002.
     """
 
-    def __init__(self, distinct: bool = False):
+    def __init__(self, distinct: bool = False, band: float = 0.0):
         super().__init__(filter_infeasible=True)
         self.nds = NonDominatedSorting()
-        self.distinct = checks.flag("distinct", distinct)
+        self.distinct, self.band = checks.flag("distinct", distinct), band_of(band)
+        if self.distinct and self.band:
+            raise GridPathError(
+                f"distinct is True and band is {band}, expected one of the two: with a band, points are distinct"
+            )
 
     def _do(self, problem, pop, *args, n_survive=None, random_state=None, **kwargs):
         F, turn = pop.get("F").astype(float), turns_of(pop, type(self).__name__)
         n_survive = len(pop) if n_survive is None else n_survive
-        rank = np.full(len(pop), len(pop))
-        for k, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_survive)):
-            rank[front] = k
+        rank = self._rank(F, turn, n_survive)
         # Whole fronts come first, so only in the last one that is needed do the further keys decide who survives.
         if self.distinct:
             repeat = repeats(F, turn)
@@ -100,6 +118,22 @@ class RankAndSmoothness(ArraySurvival):
         pop = pop[survivors]
         pop.set(rank=rank[survivors], crowding=crowding[survivors])
         return pop
+
+    def _rank(self, F: np.ndarray, turn: np.ndarray, n_survive: int) -> np.ndarray:
+        """Return the rank of each individual, front after front until enough are ranked; those that are not have rank N."""
+        rank = np.full(len(F), len(F))
+        if not self.band:
+            for k, front in enumerate(self.nds.do(F, n_stop_if_ranked=n_survive)):
+                rank[front] = k
+            return rank
+        low, span = range_of_front(F)
+        box, total = boxes(F, low, span, self.band), ((F - low) / span).sum(axis=1)
+        left, k = np.arange(len(F)), 0
+        while len(F) - len(left) < n_survive:
+            first = left[~repeats(box[left], turn[left], total[left])]
+            rank[first[is_nondominated(box[first], keep_weakly=True)]] = k
+            left, k = left[rank[left] == len(F)], k + 1
+        return rank
 
 
 class ArrayRankAndCrowding(ArraySurvival, RankAndCrowding):
@@ -135,9 +169,9 @@ class ArrayRankAndCrowding(ArraySurvival, RankAndCrowding):
         return np.concatenate(parts)
 
 
-def repeats(F: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """Return who has the objectives of another who turns less, or as much and comes earlier; bool, shape (N,)."""
-    order = np.lexsort((turn, *F.T))
+def repeats(F: np.ndarray, *keys: np.ndarray) -> np.ndarray:
+    """Return who has the row of F of another whose keys are smaller, or as large and who comes earlier; bool, shape (N,)."""
+    order = np.lexsort((*keys[::-1], *F.T))
     repeat = np.zeros(len(F), dtype=bool)
     repeat[order[1:]] = (F[order[1:]] == F[order[:-1]]).all(axis=1)
     return repeat

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import pickle
 from typing import Any
 
@@ -23,6 +24,7 @@ from pymoo.problems.many.dtlz import DTLZ2
 from pymoo_gridpath import GridPathProblem
 from pymoo_gridpath.algorithms import SmoothMOEAD, make_algorithm, reference_directions
 from pymoo_gridpath.errors import CapabilityError, GridPathError
+from pymoo_gridpath.operators import paper_operators, path_operators
 from pymoo_gridpath.operators.mating import FirstChildMating, NeighborSelection
 from pymoo_gridpath.problems.scenarios import random_dense_grid
 
@@ -68,6 +70,43 @@ def test_equal_objectives_are_decided_by_turn(make_problem):
     assert replaced(prepared(make_problem, F3, [0, 0, 0], [90, 90, 90], smoothness=False), [2, 2], 0, 45) == []
 
 
+def test_turn_decides_within_a_band(make_problem):
+    """The front is 4 wide, so that a band of 0.01 is 0.04: from 2 up to 2.04."""
+    within, beyond, better = [2.02, 2.03], [2.02, 2.05], [1.98, 1.98]
+    turns = [90, 90, 90]
+    assert replaced(prepared(make_problem, F3, [0, 0, 0], turns), within, 0, 45) == [1]
+    assert replaced(prepared(make_problem, F3, [0, 0, 0], turns), within, 0, 90) == []
+    assert replaced(prepared(make_problem, F3, [0, 0, 0], turns), beyond, 0, 45) == []
+    assert replaced(prepared(make_problem, F3, [0, 0, 0], turns), better, 0, 900) == [1]
+    assert replaced(prepared(make_problem, F3, [0, 0, 0], turns, band=0), within, 0, 45) == []
+    # Of equal turns the better path stays, if only by less than a step.
+    F = [[4.0, 0.0], [2.02, 2.03], [0.0, 4.0]]
+    assert replaced(prepared(make_problem, F, [0, 0, 0], turns), [2.02, 2.01], 0, 90) == [1]
+    assert replaced(prepared(make_problem, F, [0, 0, 0], turns), [2.03, 2.01], 0, 90) == []
+
+
+def test_bands_are_checked(make_problem):
+    for band in (-0.1, 0.6, "wide", float("nan")):
+        with pytest.raises(CapabilityError, match=r"^band is .*, expected a share from 0 to 0.5"):
+            SmoothMOEAD(np.eye(2), band=band)
+    with pytest.raises(CapabilityError, match=r"band is 0\.1 and smoothness is False, expected no band"):
+        make_algorithm("MOEAD", make_problem(), 10, smoothness=False, band=0.1)
+    assert make_algorithm("MOEAD", make_problem(), 10, smoothness=False).band == 0
+    assert make_algorithm("MOEAD", make_problem(), 10).band == 0.01
+
+
+@pytest.mark.parametrize("operators", [paper_operators, path_operators])
+def test_the_band_smooths_fronts(operators):
+    grid = random_dense_grid(16, 0.15, 2)
+    problem = GridPathProblem(grid, (0, 0), (15, 15), "integer")
+    turns = []
+    for band in (0.0, 0.05):
+        algorithm = make_algorithm("MOEAD", problem, 50, operators=operators(problem), band=band)
+        result: Any = minimize(problem, algorithm, ("n_gen", 40), seed=1)
+        turns.append(np.mean(result.opt.get("turn")))
+    assert turns[1] < turns[0]
+
+
 def test_replacements_are_limited_and_copies_are_not_spread(make_problem):
     assert replaced(prepared(make_problem, F3, [0, 0, 0], [90, 90, 90]), [0, 0], 0, 90) == [0, 1, 2]
     picked = [replaced(prepared(make_problem, F3, [0, 0, 0], [90, 90, 90], n_replace=2), [0, 0], 0, 90) for _ in range(3)]
@@ -90,8 +129,13 @@ def test_dominance_goes_before_turn(make_problem):
     assert 2 in replaced(prepared(make_problem, F, [0, 0, 0], [0, 0, 0]), [4, 1], 0, 900)
 
 
-def expected(weights, F, cv, turn, child):
+def expected(weights, F, cv, turn, child, band):
     """Say whom a child replaces, one neighbour at a time."""
+
+    def scale(f):
+        scaled = [(x - low) / width for x, low, width in zip(f, ideal, span, strict=True)]
+        return [math.floor(x / band) * band for x in scaled] if band else scaled
+
     feasible = [f for f, v in zip(F, cv, strict=True) if v <= 0]
     known = feasible or F
     front = [f for f in known if not any(all(g <= f) and any(g < f) for g in known)]
@@ -105,15 +149,18 @@ def expected(weights, F, cv, turn, child):
         ideal = np.minimum(ideal, f)
     places = []
     for k, w in enumerate(weights):
-        old, new = (max(w * abs(x - ideal) / span) for x in (F[k], f))
+        a, b = scale(f), scale(F[k])
+        new, old = (max(x * abs(y) for x, y in zip(w, point, strict=True)) for point in (a, b))
         if v != cv[k]:
             wins = v < cv[k]
         elif abs(old - new) > 1e-9 * (1 + abs(old)):
             wins = new < old
-        elif all(f <= F[k]) and any(f < F[k]):
+        elif a != b and all(x <= y for x, y in zip(a, b, strict=True)):
             wins = True
-        elif all(f >= F[k]) and any(f > F[k]):
+        elif a != b and all(x >= y for x, y in zip(a, b, strict=True)):
             wins = False
+        elif a == b and t == turn[k]:
+            wins = all(f <= F[k]) and any(f < F[k])
         else:
             wins = t < turn[k]
         places += [k] if wins else []
@@ -125,13 +172,14 @@ def test_replacement_matches_a_loop(seed, make_problem):
     rng = np.random.default_rng(seed)
     n = 9
     F, cv, turn = rng.integers(1, 5, (n, 2)).astype(float), rng.integers(0, 2, n), rng.integers(0, 3, n)
+    band = (0.0, 0.01, 0.4)[seed % 3]
     if seed % 4 == 0:
         cv += 1
     child = rng.integers(1, 5, 2).astype(float), int(rng.integers(0, 2)), int(rng.integers(0, 3))
-    algorithm = prepared(make_problem, F, cv, turn)
+    algorithm = prepared(make_problem, F, cv, turn, band=band)
     # The neighbourhood holds everybody, nearest first.
     assert sorted(algorithm.neighbors[0]) == list(range(n))
-    assert replaced(algorithm, *child) == expected(algorithm.ref_dirs, F, cv, turn, child)
+    assert replaced(algorithm, *child) == expected(algorithm.ref_dirs, F, cv, turn, child, band)
 
 
 @pytest.mark.parametrize("seed", range(60))

@@ -35,6 +35,25 @@ def test_the_set_is_the_legal_front_with_the_smoothest_path_of_each_point(object
     assert trade_off.F[:, 0].tolist() == sorted(trade_off.F[:, 0])
 
 
+@pytest.mark.parametrize("band", [0.02, 0.3])
+def test_with_a_band_the_smoothest_of_each_step_is_kept(band):
+    problem = make_problem(objectives=("length", "vulnerability"))
+    X = draw(problem)
+    every, kept = (TradeOffSet.from_genes(problem, X, band=given) for given in (0.0, band))
+    low, step = every.F.min(axis=0), band * np.ptp(every.F, axis=0)
+    legal = X[problem.decode(X).interfering_cells == 0]
+    F, turn = problem.score(problem.decode(legal)), np.asarray(problem.decode(legal).turn)
+    boxes = [tuple(box) for box in np.floor((F - low) / step).astype(int).tolist()]
+    front = {b for b in boxes if not any(c != b and c[0] <= b[0] and c[1] <= b[1] for c in boxes)}
+    least = {b: min(t for c, t in zip(boxes, turn, strict=True) if c == b) for b in front}
+    found = [tuple(box) for box in np.floor((kept.F - low) / step).astype(int).tolist()]
+    assert dict(zip(found, kept.measures["turn"], strict=True)) == least and len(found) == len(front)
+    assert kept.F[:, 0].tolist() == sorted(kept.F[:, 0]) and kept.feasible
+    assert kept.meta["settings"]["band"] == band and "band" not in every.meta["settings"]
+    with pytest.raises(GridPathError, match=r"band is 2, expected a share from 0 to 0\.5"):
+        TradeOffSet(problem, X, band=2)
+
+
 def test_of_equal_points_the_smoothest_is_kept():
     # On an empty grid, every path of seven diagonals and seven straight steps is equally long.
     problem = GridPathProblem(OccupancyGrid(np.zeros((4, 8)), corner_cutting=True), (0, 0), (7, 3), "integer")

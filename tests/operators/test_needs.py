@@ -206,7 +206,7 @@ PARAMETERS = [
         PathMutation: ("prob", "margin", "max_expansions", "ways"),
         ReachableSampling: ("roughness", "detour"),
         ScalarizedSampling: ("noise",),
-        RankAndSmoothness: ("distinct",),
+        RankAndSmoothness: ("distinct", "band"),
     }.items()
     for name in names
 ]

@@ -6,10 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymoo.core.population import Population
 from pymoo.operators.survival.rank_and_crowding.metrics import get_crowding_function
+from pymoo.optimize import minimize
 
-from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament
+from pymoo_gridpath import GridPathProblem
+from pymoo_gridpath.algorithms import make_algorithm
+from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.operators import RankAndSmoothness, SmoothnessTournament, path_operators
 from pymoo_gridpath.operators.selection import by_rank_turn_crowding
 from pymoo_gridpath.operators.survival import crowding_distances
+from pymoo_gridpath.problems import random_dense_grid
 
 
 class Unconstrained:
@@ -150,12 +155,58 @@ def test_distinct_points_survive_before_further_paths_to_the_same(seed, n_surviv
         assert min(here) == min(turn[k] for k in front if tuple(F[k]) == point)
 
 
-def test_path_aware_operators_come_with_distinct_points():
-    from pymoo_gridpath import GridPathProblem
-    from pymoo_gridpath.algorithms import make_algorithm
-    from pymoo_gridpath.operators import path_operators
-    from pymoo_gridpath.problems import random_dense_grid
+def plain_ranks(F, turn, band):
+    """Ranks where the smoothest of a box dominates the rest of it, by comparing all pairs."""
+    front = F[plain_fronts(F)[0]]
+    low, span = front.min(axis=0), np.ptp(front, axis=0)
+    span[span == 0] = 1
+    scaled = (F - low) / span
+    box = [tuple(int(np.floor(x / (band * width))) for x, width in zip(f - low, span, strict=True)) for f in F]
 
+    def beats(i, j):
+        if box[i] == box[j]:
+            return (turn[i], scaled[i].sum(), i) < (turn[j], scaled[j].sum(), j)
+        return all(a <= b for a, b in zip(box[i], box[j], strict=True))
+
+    left, rank = set(range(len(F))), {}
+    for k in range(len(F)):
+        first = {i for i in left if not any(beats(j, i) for j in left)}
+        rank |= dict.fromkeys(first, k)
+        left -= first
+    return rank
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 30), st.sampled_from([0.05, 0.3]), st.sampled_from([1, 2, 3]))
+def test_with_a_band_the_smoothest_of_a_box_stands_for_it(seed, n_survive, band, n_obj):
+    rng = np.random.default_rng(seed)
+    pop = population(rng, n_obj=n_obj)
+    pop.set("F", pop.get("F") + rng.choice([0.0, 0.1, 0.2], size=(30, n_obj)))
+    rank = plain_ranks(pop.get("F"), pop.get("turn"), band)
+    survivors = RankAndSmoothness(band=band).do(Unconstrained(), pop, n_survive=n_survive, random_state=rng)
+    chosen = survivors.get("X")[:, 0].tolist()
+    assert len(set(chosen)) == n_survive
+    assert [rank[i] for i in chosen] == sorted(rank.values())[:n_survive] == survivors.get("rank").tolist()
+    last = [i for i in range(30) if rank[i] == rank[chosen[-1]]]
+    most = max(pop[i].get("turn") for i in last if i in chosen)
+    assert all(pop[i].get("turn") >= most for i in last if i not in chosen)
+
+
+def test_a_band_and_distinct_points_exclude_one_another():
+    with pytest.raises(GridPathError, match=r"distinct is True and band is 0.1, expected one of the two"):
+        RankAndSmoothness(distinct=True, band=0.1)
+
+
+def test_a_band_smooths_the_result():
+    problem = GridPathProblem(random_dense_grid(16, 0.15, 2), (0, 0), (15, 15), "integer")
+    turns = []
+    for survival in (RankAndSmoothness(distinct=True), RankAndSmoothness(band=0.05)):
+        given = {**path_operators(problem), "selection": SmoothnessTournament(), "survival": survival}
+        algorithm = make_algorithm("NSGA2", problem, 50, operators=given)
+        turns.append(np.mean(minimize(problem, algorithm, ("n_gen", 30), seed=1).opt.get("turn")))
+    assert turns[1] < turns[0]
+
+
+def test_path_aware_operators_come_with_distinct_points():
     problem = GridPathProblem(random_dense_grid(8, 0.2, 1), (0, 0), (7, 7))
     assert not make_algorithm("NSGA2", problem).survival.distinct
     assert make_algorithm("NSGA2", problem, operators=path_operators(problem)).survival.distinct

@@ -271,7 +271,7 @@ def test_a_selection_and_a_survival_leave_the_tie_break_out(hikers):
     plan = planned({"operators": given})
     spec = plan.task(plan.runs[0]).algorithm
     assert spec["smoothness"] is False
-    assert spec["operators"]["survival"] == {"class": "RankAndSmoothness", "distinct": True}
+    assert spec["operators"]["survival"] == {"class": "RankAndSmoothness", "distinct": True, "band": 0.0}
     _, algorithm = built(plan)
     assert type(algorithm.survival) is RankAndSmoothness and algorithm.survival.distinct
     _, other = built(planned({"operators": {"survival": RankAndSmoothness(distinct=True)}}))

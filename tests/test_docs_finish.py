@@ -1,0 +1,62 @@
+"""What the documentation checks when it is built: links within the site, and that tutorials have one form."""
+
+from __future__ import annotations
+
+import base64
+import importlib.util
+import io
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+DOCS = Path(__file__).parent.parent / "docs"
+SPEC = importlib.util.spec_from_file_location("finish", DOCS / "finish.py")
+assert SPEC is not None and SPEC.loader is not None
+finish = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(finish)
+
+
+def site(folder, **pages):
+    for name, body in pages.items():
+        (folder / f"{name}.html").write_text(f"<html><body>{body}</body></html>", encoding="utf-8")
+    return finish.read_pages(folder)
+
+
+def test_links_that_lead_nowhere_are_named(tmp_path):
+    (tmp_path / "a picture.png").write_bytes(b"")
+    one = '<h1 id="top"></h1><a href="two.html#there">x</a><a href="#top">x</a><img src="a%20picture.png">'
+    one += '<a href="two.html#gone">x</a><a href="three.html">x</a><a href="#end">x</a><a href="https://pymoo.org/no">x</a>'
+    pages = site(tmp_path, one=one, two='<p id="there"><a href="mailto:a@b.org">x</a></p>')
+    wrong = finish.broken_links(tmp_path, pages)
+    assert [line.split()[1] for line in wrong] == ["two.html#gone", "three.html", "#end"]
+    assert all(line.startswith("one.html: ") for line in wrong)
+
+
+def test_thumbnails_are_of_the_last_figure(tmp_path, monkeypatch):
+    monkeypatch.setattr(finish, "TUTORIALS", ("walk", "bare", "missing"))
+    (tmp_path / "_images").mkdir()
+    encoded = io.BytesIO()
+    Image.new("RGB", (90, 30), "red").save(encoded, "gif")
+    data = base64.b64encode(encoded.getvalue()).decode()
+    pages = site(tmp_path, walk=f'<img src="_images/first.png"><img src="data:image/gif;base64,{data}">', bare="<p></p>")
+    wrong = finish.draw_thumbnails(tmp_path, pages)
+    assert [line.split(":")[0] for line in wrong] == ["bare", "missing"]
+    with Image.open(tmp_path / "_images" / "thumbnail-walk.png") as image:
+        assert image.size == finish.THUMBNAIL
+        assert image.getpixel((240, 150)) == (254, 0, 0) or image.getpixel((240, 150)) == (255, 0, 0)
+        assert image.getpixel((0, 0)) == (255, 255, 255)
+
+
+@pytest.mark.parametrize("name", finish.TUTORIALS)
+def test_a_tutorial_begins_with_a_question_and_stands_in_the_gallery(name):
+    text = (DOCS / f"{name}.md").read_text(encoding="utf-8")
+    title, _, rest = text.partition("\n# ")[2].partition("\n")
+    assert "?" in rest.strip().split("\n\n")[0], title
+    assert "{code-cell}" in text
+    gallery = (DOCS / "tutorials.md").read_text(encoding="utf-8")
+    assert f"thumbnail-{name}.png" in gallery and f"({name}.md)" in gallery and f"<{name}>" in gallery
+
+
+def test_no_tutorial_is_long():
+    assert not finish.long_tutorials(DOCS) and len(finish.TUTORIALS) == 10
