@@ -80,16 +80,16 @@ def paths_of(grid: OccupancyGrid, start: tuple[int, int], goal: tuple[int, int])
     return TradeOffSet.from_genes(problem, pop.get("X"))
 
 
-def corridor(width: int, risk: Vulnerability | str, name: str) -> tuple[int, float]:
-    """Print what becomes of the safest path of an empty slanted corridor; return how far it and its waypoints turn, in degrees."""
+def corridor(width: int, risk: Vulnerability | str, name: str) -> tuple[float, float]:
+    """Print what becomes of the safest path of an empty slanted corridor; return how far it and its waypoints turn."""
     side = 192 + width
     x, y = np.meshgrid(np.arange(200), np.arange(side))
     grid = OccupancyGrid(np.abs(y - (side - 76) / 2 - 0.37 * x) > width / 2, 0.05, name="slanted corridor")
-    ends = [(x, round((side - 76) / 2 + 0.37 * x)) for x in (2, 197)]
-    problem = GridPathProblem(grid, *ends, "cells", ("length", risk))
+    start, goal = ((x, round((side - 76) / 2 + 0.37 * x)) for x in (2, 197))
+    problem = GridPathProblem(grid, start, goal, "cells", ("length", risk))
     record = TradeOffSet.from_genes(problem, exact_front(problem).X).safest
     made = record.waypoints()
-    print(f"slanted corridor, {width * 0.05:.1f} m wide, {name}: cell path {record.turn} degrees; {made}")
+    print(f"slanted corridor, {width * 0.05:.1f} m wide, {name}: cell path {record.turn:g} degrees; {made}")
     return record.turn, made.turn
 
 
