@@ -20,6 +20,7 @@ import time
 import warnings
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import moocore
 import numpy as np
@@ -54,7 +55,8 @@ def serve(evaluations: int) -> None:
         algorithm = make_algorithm("NSGA2", problem, pop_size=200, operators=path_operators(problem))
         begin = time.process_time()
         result = minimize(problem, algorithm, termination, seed=seed)
-        return time.process_time() - begin, result.pop
+        population: Any = result.pop
+        return time.process_time() - begin, population
 
     # Compiles.
     run(make_problem("rooms of 32", 1), ("n_gen", 3), 1)
@@ -115,7 +117,8 @@ def main() -> None:
     for kind in kinds:
         before, after, less, more, exact = np.array(rows[kind]).T
         gains = more - less
-        chance = stats.wilcoxon(gains).pvalue if gains.any() else 1.0
+        test: Any = stats.wilcoxon(gains) if gains.any() else None
+        chance = test.pvalue if test else 1.0
         print(
             f"{kind:15}{np.median(before):>16.2f}{np.median(after):>8.2f}{np.median(after / before):>8.3f}"
             f"{np.median(less):>21.5f}{np.median(more):>9.5f}{(gains > 0).sum():>6}{(gains < 0).sum():>6}{chance:>8.3f}"
