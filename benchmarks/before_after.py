@@ -143,9 +143,9 @@ def map_workloads(folder: Path) -> Iterator[tuple[str, Callable[[], Callable[[],
         yield f"exact, three objectives, {name}", fronts(maps[name], [half[name]], [*paper, Turn()])
 
 
-def drawn_maps(side: int = 512) -> dict[str, np.ndarray]:
+def drawn_maps(side: int = 512, seed: int = 7) -> dict[str, np.ndarray]:
     """Return maps of random cells, of rooms, and of mazes of narrow and of wide corridors, from a seed."""
-    draw = np.random.default_rng(7)
+    draw = np.random.default_rng(seed)
     rooms = np.zeros((side, side), dtype=bool)
     rooms[32::33] = rooms[:, 32::33] = True
     for y in range(0, side, 33):
@@ -220,11 +220,11 @@ def digest(made: object) -> str:
 
 
 class Version:
-    """A fresh process of one version."""
+    """A fresh process of one version, which serves turns at what a script lists."""
 
-    def __init__(self, folder: Path, maps: Path | None):
+    def __init__(self, folder: Path, script: str, *options: str):
         environment = os.environ | {"PYTHONPATH": str(folder.resolve())}
-        command = [sys.executable, __file__, "--serve", *([] if maps is None else ["--maps", str(maps)])]
+        command = [sys.executable, script, "--serve", *options]
         self.process = subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         where, *self.names = self._answer()
         assert Path(where) == folder.resolve(), f"{folder} holds no version of the package: it comes from {where}"
@@ -233,8 +233,8 @@ class Version:
         assert self.process.stdout is not None
         return json.loads(self.process.stdout.readline())
 
-    def turn(self, number: int) -> tuple[list[float], str]:
-        """Return the times of a turn, in seconds, and a digest of what was found."""
+    def turn(self, number: int) -> tuple:
+        """Return the times of a turn, in seconds, and what was found, here as a digest."""
         assert self.process.stdin is not None
         print(number, file=self.process.stdin, flush=True)
         return self._answer()
@@ -261,7 +261,8 @@ def main() -> None:
     times: dict[str, dict[str, list[float]]] = {}
     different: set[str] = set()
     for number in range(arguments.rounds):
-        versions = {side: Version(getattr(arguments, side), arguments.maps) for side in SIDES}
+        options = [] if arguments.maps is None else ["--maps", str(arguments.maps)]
+        versions = {side: Version(getattr(arguments, side), __file__, *options) for side in SIDES}
         for k, name in enumerate(versions["after"].names):
             if arguments.only not in name:
                 continue

@@ -65,8 +65,7 @@ class ArrayMating(Mating):
                 )
             children = self._cross(problem, X[parents[:n_matings].T], random_state, kwargs)
             parents = parents[n_matings:]
-            children = self._mutate(problem, children, random_state, kwargs)
-            children = self.repair._do(problem, children, random_state=random_state, **kwargs)
+            children = self._mutated_and_repaired(problem, children, random_state, kwargs)
             offspring.append(_unseen(children, seen)[:missing])
             missing -= len(offspring[-1])
             if missing == 0:
@@ -81,12 +80,16 @@ class ArrayMating(Mating):
         children[:, ~crossed] = X[np.arange(n) % len(X)][:, ~crossed]
         return children.reshape(-1, X.shape[-1])
 
-    def _mutate(self, problem, X, random_state, kwargs):
+    def _mutated_and_repaired(self, problem, X, random_state, kwargs):
         mutated = random_state.random(len(X)) <= number(self.mutation.prob)
         # Some mutate the array that they are given.
         before = X if mutated.all() else X.copy()
         children = self.mutation._do(problem, X, random_state=random_state, **kwargs)
-        return children if mutated.all() else np.where(mutated[:, None], children, before)
+        if not mutated.all():
+            children = np.where(mutated[:, None], children, before)
+        elif makes_legal(self.mutation) and getattr(self.repair, "keeps_legal", False):
+            return children
+        return self.repair._do(problem, children, random_state=random_state, **kwargs)
 
 
 class NeighborSelection(NeighborhoodSelection):
@@ -125,8 +128,7 @@ class FirstChildMating(ArrayMating):
         assert parents is not None and random_state is not None
         X = np.array([individual.X for individual in parents.T.ravel()]).reshape(*parents.T.shape, -1)
         children = self._cross(problem, X, random_state, kwargs)[:n_offsprings]
-        children = self._mutate(problem, children, random_state, kwargs)
-        return ArrayPopulation.of(self.repair._do(problem, children, random_state=random_state, **kwargs))
+        return ArrayPopulation.of(self._mutated_and_repaired(problem, children, random_state, kwargs))
 
 
 # Whose ``do`` mating on arrays stands in for.
@@ -152,6 +154,19 @@ def mates_on_arrays(operator) -> bool:
             return bool(vars(cls)["arrays"])
         if any(hook in vars(cls) for hook in hooks):
             return cls in _CALLED_AS_ARRAYS
+    return False
+
+
+def makes_legal(operator) -> bool:
+    """Return whether all that an operator makes are legal paths, as its representation writes them.
+
+    Its class says so by an attribute ``makes_legal``, which does not hold for classes derived from it that have their own way.
+    """
+    for cls in type(operator).__mro__:
+        if "makes_legal" in vars(cls):
+            return bool(vars(cls)["makes_legal"])
+        if "_do" in vars(cls):
+            return False
     return False
 
 

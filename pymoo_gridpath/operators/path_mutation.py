@@ -16,13 +16,16 @@ from pymoo_gridpath.search.vary import REROUTE, SHIFT, STRAIGHTEN, Changes, vary
 #: The ways in which `PathMutation` changes a stretch, with the default shares.
 WAYS = {"weighted": 0.5, "random": 0.2, "shortcut": 0.1, "straighten": 0.1, "shift": 0.1}
 
+# On open ground a search expands about so many cells for each step of the stretch; where it may not, it is mostly given up.
+EXPANSIONS_PER_STEP = 10
+
 
 @OPERATORS.register
 class PathMutation(Mutation):
     """Replace a random stretch between two cells of a path.
 
-    The stretch has between one step and all of them, as likely 10 to 20 as 100 to 200. For each path one of these ways is
-    drawn:
+    The stretch has between one step and all of them, as likely 10 to 20 as 100 to 200, but no more than most searches can
+    bridge: a tenth of ``max_expansions``. For each path one of these ways is drawn:
 
     - "weighted": the cheapest route for random weights of the objectives that add up along a path.
     - "random": the cheapest route under random costs besides, three times as rough at most.
@@ -30,8 +33,8 @@ class PathMutation(Mutation):
     - "straighten": the way with a single turn, a diagonal and a straight run.
     - "shift": the same cells moved one cell to a side.
 
-    Obstacles are never entered and loops are cut, so paths stay legal. Where the way is barred or the search is given up,
-    the path stays as it was.
+    Obstacles are never entered and loops are cut, so paths stay legal. Where a search is given up, the stretch ends at the last
+    of its cells to which the cheapest route is known. Where there is none, or the way is barred, the path stays as it was.
 
     Parameters
     ----------
@@ -39,13 +42,16 @@ class PathMutation(Mutation):
         Share of each of the ways above, zero where left out; by default `WAYS`.
     margin : int, default 16
         New routes keep to the bounding box of the two cells, grown by so many cells on each side.
-    max_expansions : int, default 5000
+    max_expansions : int, default 2500
         Cells to expand in search of a route before giving up, which bounds the time that a mutation takes on large maps.
     prob : float, default 1.0
         Probability of an individual to be mutated at all.
     """
 
-    def __init__(self, ways=None, margin: int = 16, max_expansions: int = 5000, prob: float = 1.0, **kwargs):
+    # No child needs repair.
+    makes_legal = True
+
+    def __init__(self, ways=None, margin: int = 16, max_expansions: int = 2500, prob: float = 1.0, **kwargs):
         super().__init__(prob=in_range("prob", prob, 0, 1), **kwargs)
         self.shares = shares_of(ways, WAYS)
         self.margin = whole("margin", margin, 0, 10**6)
@@ -61,7 +67,7 @@ class PathMutation(Mutation):
     def _draw(self, problem, lengths: np.ndarray, random_state) -> Changes:
         n = len(lengths)
         way = np.searchsorted(np.cumsum(self.shares)[:-1], random_state.random(n), side="right")
-        begin, end = random_stretches(lengths, random_state)
+        begin, end = random_stretches(lengths, random_state, max(self.max_expansions // EXPANSIONS_PER_STEP, 1))
         weights = random_weights(problem, n, random_state)
         weights[way == _SHORTCUT] = 1
         weights[way == _SHORTCUT, 0] = FULL_WEIGHT

@@ -22,6 +22,9 @@ class PathRepair(Repair):
     # Whoever has such a repair need not be told that other operators know nothing of paths.
     knows_paths = True
 
+    # Rows of what makes legal paths need not be looked at.
+    keeps_legal = True
+
     def _do(self, problem, X, random_state=None, **kwargs):
         assert random_state is not None
         representation, terrain = representation_of(problem), terrain_of(problem)

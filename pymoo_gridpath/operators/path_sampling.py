@@ -152,10 +152,14 @@ def _rerouted(problem, X: np.ndarray, weights: np.ndarray, noise: np.ndarray, ra
     return problem.representation.from_sequences(changed)
 
 
-def random_stretches(lengths: np.ndarray, random_state) -> tuple[np.ndarray, np.ndarray]:
-    """Return the positions of the two ends of a stretch of each path; the logarithm of the number of steps is uniform."""
+def random_stretches(lengths: np.ndarray, random_state, most: float = np.inf) -> tuple[np.ndarray, np.ndarray]:
+    """Return the positions of the two ends of a stretch of each path.
+
+    The logarithm of the number of steps is uniform, up to all of them or ``most``.
+    """
     n = len(lengths)
-    stretch = np.minimum(np.exp(random_state.random(n) * np.log(lengths)).astype(np.int64), lengths - 1)
+    longest = np.minimum(lengths, most + 1)
+    stretch = np.minimum(np.exp(random_state.random(n) * np.log(longest)).astype(np.int64), lengths - 1)
     begin = (random_state.random(n) * (lengths - stretch)).astype(np.int64)
     return begin, begin + stretch
 

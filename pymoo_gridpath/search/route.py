@@ -20,14 +20,18 @@ MASK = 2**31 - 1
 #: The target of a search for routes to all cells.
 NOWHERE = np.int64(-1)
 
+# More than any route costs.
+ENDLESS = np.int64(2**62)
+
 
 class Work(NamedTuple):
     """What searches write to, made once for many of them.
 
     Attributes
     ----------
-    run : numpy.ndarray of int64, shape (2,)
-        Number of the search that is on, and of the cells that it has expanded.
+    run : numpy.ndarray of int64, shape (3,)
+        Number of the search that is on, and of the cells that it has expanded; if it has found no route, the bound of the whole
+        cost below which all cells have been expanded.
     stamp : numpy.ndarray of int64, shape (n_cells,)
         The last search that reached each cell; the other arrays hold for cells of the search that is on.
     cost : numpy.ndarray of int64, shape (n_cells,)
@@ -52,7 +56,7 @@ def make_work(terrain: Terrain) -> Work:
     n = len(terrain.legal)
     cost, came, place = np.empty((3, n), dtype=np.int64)
     return Work(
-        np.zeros(2, dtype=np.int64), np.zeros(n, dtype=np.int64), cost, came, place, np.empty((4096, 3), dtype=np.int64)
+        np.zeros(3, dtype=np.int64), np.zeros(n, dtype=np.int64), cost, came, place, np.empty((4096, 3), dtype=np.int64)
     )
 
 
@@ -96,7 +100,8 @@ def find_route(terrain, work, source, target, weight, noise, margin, limit):
     push(heap, 0, ahead, ahead, source)
     n = 1
     while n > 0:
-        reached = heap[0, 0] - heap[0, 1]
+        bound = heap[0, 0]
+        reached = bound - heap[0, 1]
         cell = heap[0, 2]
         drop_first(heap, n)
         n -= 1
@@ -106,6 +111,7 @@ def find_route(terrain, work, source, target, weight, noise, margin, limit):
             return True
         work.run[1] += 1
         if work.run[1] > limit:
+            work.run[2] = bound
             return False
         if n + 8 > len(heap):
             heap = grown(heap)
@@ -132,7 +138,27 @@ def find_route(terrain, work, source, target, weight, noise, margin, limit):
             ahead = least_rest(terrain, weight, other, target, abs(tx - nx), abs(ty - ny))
             push(heap, n, total + ahead, ahead, other)
             n += 1
+    work.run[2] = ENDLESS
     return False
+
+
+@kernel
+def last_reached(terrain, work, path, begin, end, weight):
+    """Return the last position in a stretch of a path to whose cell a search has found the cheapest route, ``begin`` for none.
+
+    The search was one for a route from the first cell of the stretch to the last, and has found none.
+    """
+    width = terrain.width
+    target = path[end]
+    for k in range(end - 1, begin, -1):
+        cell = path[k]
+        if work.stamp[cell] != work.run[0]:
+            continue
+        dx, dy = abs(target % width - cell % width), abs(target // width - cell // width)
+        # Bounds never fall along a route, so that what has yet to be expanded does not lie below the last one.
+        if work.cost[cell] + least_rest(terrain, weight, cell, target, dx, dy) < work.run[2]:
+            return k
+    return begin
 
 
 @kernel

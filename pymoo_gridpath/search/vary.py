@@ -8,7 +8,7 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
-from pymoo_gridpath.search.route import DX, DY, find_route, make_work, room, unwind
+from pymoo_gridpath.search.route import DX, DY, find_route, last_reached, make_work, room, unwind
 from pymoo_gridpath.search.sequences import append_without_loops, heading_between
 from pymoo_gridpath.search.splice import write
 from pymoo_gridpath.search.terrain import Terrain
@@ -26,7 +26,8 @@ class Changes(NamedTuple):
     Attributes
     ----------
     way : numpy.ndarray of int64, shape (N,)
-        `REROUTE` takes the cheapest route between the two ends of the stretch; `STRAIGHTEN` the way with one turn,
+        `REROUTE` takes the cheapest route between the two ends of the stretch, or the last of its cells to which the search for
+        that has found one; `STRAIGHTEN` the way with one turn,
         a diagonal and a straight run, or two straight ones where there are no diagonal steps; `SHIFT` moves what lies between
         the ends one cell along a heading.
     begin, end : numpy.ndarray of int64, shape (N,)
@@ -78,7 +79,9 @@ def _vary(terrain, work, cells, offsets, changes, margin, limit, max_cells):
         path, n = write(old, 0, begin + 1, path, 0)
         weight, noise = changes.weights[i], changes.noise[i]
         if changes.way[i] == REROUTE:
-            done = find_route(terrain, work, old[begin], old[end], weight, noise, margin, limit)
+            if not find_route(terrain, work, old[begin], old[end], weight, noise, margin, limit):
+                end = last_reached(terrain, work, old, begin, end, weight)
+            done = end > begin
             if done:
                 path, n = unwind(terrain, work, old[begin], old[end], path, n)
         elif changes.way[i] == STRAIGHTEN:

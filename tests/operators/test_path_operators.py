@@ -236,6 +236,46 @@ def test_each_way_of_mutation_does_what_it_says(way):
         assert length_.mean() < length.mean() and potential_.mean() < potential.mean()
 
 
+def test_fewer_expansions_change_shorter_stretches():
+    problem = corner_to_corner("cells", 48, 0.1)
+    X = ReachableSampling()._do(problem, 200, random_state=np.random.default_rng(2))
+    paths = problem.decode(X)
+    shares = []
+    for most in (1, 20, 200):
+        mutation = PathMutation({"shortcut": 1.0}, max_expansions=most)
+        changes = mutation._draw(problem, paths.sequences.lengths, np.random.default_rng(3))
+        assert (changes.end - changes.begin).max() == max(most // 10, 1)
+        mutated = mutation._do(problem, X, random_state=np.random.default_rng(3))
+        assert is_legal(problem, mutated) and (problem.decode(mutated).length <= paths.length + 1e-9).all()
+        shares.append((mutated != X).any(axis=1).mean())
+    assert shares == sorted(shares) and shares[0] == 0 and shares[-1] > 0.3
+
+
+def test_children_that_are_legal_already_are_not_repaired():
+    class Counted(PathRepair):
+        n = 0
+
+        def _do(self, problem, X, **kwargs):
+            Counted.n += 1
+            return super()._do(problem, X, **kwargs)
+
+    class Own(PathMutation):
+        def _do(self, problem, X, *args, **kwargs):
+            return super()._do(problem, X, *args, **kwargs)
+
+    problem = corner_to_corner("cells", 16, 0.2)
+    found, counts = [], []
+    for mutation in (PathMutation(), Own(), PathMutation(prob=0.5)):
+        Counted.n = 0
+        made = path_operators(problem) | {"mutation": mutation, "repair": Counted()}
+        algorithm = make_algorithm("NSGA2", problem, 12, operators=made)
+        found.append(minimize(problem, algorithm, ("n_gen", 5), seed=1).pop.get("X"))
+        counts.append(Counted.n)
+    # The first generation always is; and what another class or half of the parents hand on may be anything.
+    assert counts[0] == 1 and min(counts[1:]) >= 5
+    assert np.array_equal(found[0], found[1])
+
+
 def test_room_is_kept_to():
     grid = SPIRAL.replace(occupied=np.zeros((12, 12)))
     problem = GridPathProblem(grid, (0, 0), (11, 11), CellSequence(grid, (0, 0), (11, 11), max_cells=13))

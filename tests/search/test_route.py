@@ -13,7 +13,7 @@ from scipy.sparse import csgraph
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import NOWHERE, block_noise, find_route, least_rest, make_work, unwind
+from pymoo_gridpath.search.route import NOWHERE, block_noise, find_route, last_reached, least_rest, make_work, unwind
 from pymoo_gridpath.search.shortest import UNREACHABLE
 from pymoo_gridpath.search.terrain import LARGEST_COST, make_terrain, plain_terrain, steps_through
 
@@ -217,6 +217,40 @@ def test_searches_give_up_at_their_limit_and_at_walls():
     assert not find_route(terrain, work, 0, 4, weight, none, 3, EVERYWHERE)
     assert find_route(terrain, work, 0, 4, weight, none, 4, EVERYWHERE)
     assert not find_route(terrain, work, 0, 7, weight, none, 4, EVERYWHERE), "an occupied cell"
+
+
+@settings(max_examples=40)
+@given(queries(), st.sampled_from(["cells", "integer"]), st.booleans())
+def test_a_search_that_is_given_up_knows_how_far_along_a_path_it_has_come(query, name, noisy):
+    terrain, rng = terrain_of(query, name), query[-1]
+    work, weight = make_work(terrain), rng.integers(1, 1025, 2)
+    noise = np.array([rng.integers(1, 8000), rng.integers(0, 4), rng.integers(0, 2**31)]) * noisy
+    # A path to be changed: the cheapest for other weights.
+    assert find_route(terrain, work, terrain.start, terrain.goal, np.array([1, 1024]), 0 * noise, EVERYWHERE, EVERYWHERE)
+    path, n = unwind(terrain, work, terrain.start, terrain.goal, np.array([terrain.start]), 1)
+    least = csgraph.dijkstra(graph_of(terrain, weight, [int(v) for v in noise]), indices=terrain.start)
+    reached = []
+    for limit in range(terrain.useful.sum()):
+        if find_route(terrain, work, terrain.start, terrain.goal, weight, noise, EVERYWHERE, limit):
+            break
+        reached.append(last_reached(terrain, work, path, 0, n - 1, weight))
+        assert 0 <= reached[-1] < n - 1
+        if reached[-1]:
+            cell = int(path[reached[-1]])
+            found, m = unwind(terrain, work, terrain.start, cell, np.array([terrain.start]), 1)
+            assert found[m - 1] == cell and work.cost[cell] == least[cell]
+    # The longer it goes on, the farther it comes.
+    assert reached == sorted(reached) and (not reached or reached[0] == 0)
+
+
+def test_a_route_that_is_barred_by_the_margin_leads_as_far_as_the_wall_lets_it():
+    wall = np.zeros((5, 5))
+    wall[:4, 2] = 1
+    terrain = plain_terrain(Moves(SPIRAL.replace(occupied=wall)), 0, 4)
+    work, weight, none = make_work(terrain), np.array([1024]), np.zeros(3, dtype=np.int64)
+    path = np.array([0, 6, 11, 16, 22, 18, 13, 8, 4])
+    assert not find_route(terrain, work, 0, 4, weight, none, 3, EVERYWHERE)
+    assert last_reached(terrain, work, path, 0, 8, weight) == 3
 
 
 def test_noise_is_even():
