@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
 
@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (default: as many as cores)")
     given = parser.parse_args(arguments)
     mpl.use("Agg")
-    with ProcessPoolExecutor(given.jobs) as pool:
+    with ProcessPoolExecutor(given.jobs) if given.jobs > 1 else ThreadPoolExecutor(1) as pool:
         settings = Settings(pool, given.full, given.runs, given.members, given.generations, given.largest, given.output)
         for section in given.section:
             print(f"Section {section}\n{'=' * 11}")

@@ -21,7 +21,7 @@ from paper_sections.genetic import genetic_algorithm
 from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.algorithms import FirstLegalPath, Setup, ahmed_deb_2013, minimize_runs
 from pymoo_gridpath.decision import TradeOffSet
-from pymoo_gridpath.plotting import plot_map
+from pymoo_gridpath.plotting import plot_front, plot_map, plot_paths
 from pymoo_gridpath.problems import random_dense_grid
 from pymoo_gridpath.quality import ReferenceFront
 
@@ -148,13 +148,19 @@ def ratio(found: TradeOffSet, reference: ReferenceFront) -> float:
 
 def several(settings: Settings, grid: OccupancyGrid, n_runs: int, **options: Any) -> Runs:
     """Return runs of the paper on a grid with the seeds 1 to n_runs; options are those of `ahmed_deb_2013`."""
+    each = one_each(settings, [grid] * n_runs, **options)
+    return Runs(each, TradeOffSet.from_genes(each[0].problem, np.concatenate([one.X for one in each])))
+
+
+def one_each(settings: Settings, grids: Sequence[OccupancyGrid], **options: Any) -> list[TradeOffSet]:
+    """Return what one run of the paper finds on each grid; run k has the seed k + 1."""
     options = settings.size | options
-    genes = list(settings.pool.map(partial(_genes, grid, options), range(1, n_runs + 1)))
-    problem = ahmed_deb_2013(*corners(grid), **options).problem
-    return Runs([TradeOffSet.from_genes(problem, X) for X in genes], TradeOffSet.from_genes(problem, np.concatenate(genes)))
+    genes = list(settings.pool.map(partial(_genes, options=options), grids, range(1, len(grids) + 1)))
+    problems = [ahmed_deb_2013(*corners(grid), **options).problem for grid in grids]
+    return [TradeOffSet.from_genes(problem, X) for problem, X in zip(problems, genes, strict=True)]
 
 
-def _genes(grid: OccupancyGrid, options: dict[str, Any], seed: int) -> np.ndarray:
+def _genes(grid: OccupancyGrid, seed: int, options: dict[str, Any]) -> np.ndarray:
     """Return what one run found. It is set up here, since not all algorithms can be sent to another process."""
     return TradeOffSet.from_results(minimize_runs(*setup(grid, options), n_runs=1, seed=seed)).X
 
@@ -187,6 +193,13 @@ def median(values: Sequence | np.ndarray, digits: int = 4) -> str:
     return f"{text} [{values[k - 1]:.{digits}f}, {values[-k]:.{digits}f}]" if k else text
 
 
+def against(first: np.ndarray, second: np.ndarray) -> str:
+    """Return on how many scenarios only one of two methods succeeded, and the p value of McNemar's exact test."""
+    only = int((first & ~second).sum()), int((second & ~first).sum())
+    p = stats.binomtest(only[0], sum(only)).pvalue if sum(only) else 1.0
+    return f"{only[0]} : {only[1]}, p = {p:.2g}"
+
+
 def show(title: str, head: Sequence[str], rows: Sequence[Sequence]) -> None:
     """Print a table under a title, all columns but the first to the right."""
     texts = [list(head)] + [[str(entry) for entry in row] for row in rows]
@@ -200,6 +213,13 @@ def show(title: str, head: Sequence[str], rows: Sequence[Sequence]) -> None:
 def progress(*row: object) -> None:
     """Say what is known so far, beside what is printed."""
     print(*row, sep=" | ", file=sys.stderr, flush=True)
+
+
+def draw_set(settings: Settings, name: str, found: TradeOffSet, reference: ReferenceFront) -> None:
+    """Draw a front beside the exact one, and its paths on their map, if figures are wanted."""
+    if settings.output and found.feasible:
+        settings.save(plot_front(found, reference.points, reference_label="exact front").figure, f"{name}-front")
+        settings.save(plot_paths(found).figure, f"{name}-paths")
 
 
 def draw_map(settings: Settings, name: str, grid: OccupancyGrid, paths: Mapping[str, np.ndarray]) -> None:

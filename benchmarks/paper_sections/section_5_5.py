@@ -9,7 +9,6 @@ constraint, so that what differs is two things; one objective with a penalty tel
 from __future__ import annotations
 
 import numpy as np
-from scipy import stats
 
 from paper_sections.base import (
     LENGTH,
@@ -17,6 +16,7 @@ from paper_sections.base import (
     VULNERABILITY,
     Ended,
     Settings,
+    against,
     draw_map,
     exact,
     median,
@@ -101,10 +101,3 @@ def dense(settings: Settings) -> None:
     names = [name for name, _, obstacles, _ in METHODS if obstacles == "constraint"]
     paths = {f"{name}: crosses {found[name][0].crossed} obstacles": found[name][0].cells for name in names}
     draw_map(settings, "section-5.5-figure-7b", grids[0], paths)
-
-
-def against(first: np.ndarray, second: np.ndarray) -> str:
-    """Return on how many scenarios only one of two methods succeeded, and the p value of McNemar's exact test."""
-    only = int((first & ~second).sum()), int((second & ~first).sum())
-    p = stats.binomtest(only[0], sum(only)).pvalue if sum(only) else 1.0
-    return f"{only[0]} : {only[1]}, p = {p:.2g}"

@@ -15,8 +15,8 @@ class SugiharaSmithRepresentation(BinaryRepresentation):
 
     A path that climbs on in a column which it entered diagonally does not have a code: it has to step horizontally and climb
     one more. So there are legal paths, and points of fronts, that it cannot say (``codes_all`` is False), and paths are longer
-    than in the other codings. It is what the codings of Ahmed and Deb improve on. In the last column, paths join the goal whatever
-    the step into it. On a grid without diagonal steps all are horizontal, and every path that advances has a code.
+    than in the other codings. It is what the codings of Ahmed and Deb improve on. In the last column, paths join the goal
+    whatever the step into it. On a grid without diagonal steps all are horizontal, and every path that advances has a code.
 
     See `MonotoneRepresentation` for the parameters.
 
