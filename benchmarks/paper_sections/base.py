@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
 from pymoo.optimize import minimize
 from scipy import stats
 
@@ -77,12 +76,12 @@ class Settings:
         """Return a scenario of section 6."""
         return random_dense_grid(min(side, self.largest), p0, np.random.default_rng([side, round(100 * p0), seed]))
 
-    def save(self, figure: Figure, name: str) -> None:
-        """Write a figure to the folder of figures."""
+    def save(self, ax: Any, name: str) -> None:
+        """Write the figure of some Axes to the folder of figures."""
         assert self.output is not None
         self.output.mkdir(parents=True, exist_ok=True)
         path = self.output / f"{name}.png"
-        figure.savefig(path, dpi=150, bbox_inches="tight")
+        ax.figure.savefig(path, dpi=150, bbox_inches="tight")
         print(f"figure: {path}")
 
 
@@ -218,8 +217,8 @@ def progress(*row: object) -> None:
 def draw_set(settings: Settings, name: str, found: TradeOffSet, reference: ReferenceFront) -> None:
     """Draw a front beside the exact one, and its paths on their map, if figures are wanted."""
     if settings.output and found.feasible:
-        settings.save(plot_front(found, reference.points, reference_label="exact front").figure, f"{name}-front")
-        settings.save(plot_paths(found).figure, f"{name}-paths")
+        settings.save(plot_front(found, reference.points, reference_label="exact front"), f"{name}-front")
+        settings.save(plot_paths(found), f"{name}-paths")
 
 
 def draw_map(settings: Settings, name: str, grid: OccupancyGrid, paths: Mapping[str, np.ndarray]) -> None:
@@ -231,7 +230,7 @@ def draw_map(settings: Settings, name: str, grid: OccupancyGrid, paths: Mapping[
     for (label, cells), line in zip(paths.items(), itertools.cycle(("-", ":", "--", "-."))):
         ax.plot(*cells.T, line, label=label)
     ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
-    settings.save(ax.get_figure(root=True), name)
+    settings.save(ax, name)
 
 
 class Clock:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.operators.selection.tournament import TournamentSelection
@@ -39,4 +41,5 @@ def genetic_algorithm(problem, pop_size: int) -> GA:
     operators = paper_operators(problem, eta_crossover=ETA_CROSSOVER)
     selection = TournamentSelection(func_comp=by_violation_and_value)
     mating = ArrayMating(selection, operators["crossover"], operators["mutation"], operators["repair"])
-    return GA(pop_size, selection=selection, survival=BestSurvive(), mating=mating, evaluator=ArrayEvaluator(), **operators)
+    survival: Any = BestSurvive()
+    return GA(pop_size, selection=selection, survival=survival, mating=mating, evaluator=ArrayEvaluator(), **operators)

@@ -60,5 +60,5 @@ def run(settings: Settings) -> None:
         ax.plot(*truth.points.T, "k-", linewidth=0.8, label="exact front")
         ax.set(xlabel="length [cells]", ylabel="vulnerability")
         ax.legend()
-        settings.save(ax.figure, "section-5.3-figure-3")
+        settings.save(ax, "section-5.3-figure-3")
     draw_set(settings, "section-5.3-figure-4", found["integer"].merged, truth)

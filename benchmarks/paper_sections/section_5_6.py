@@ -41,7 +41,7 @@ def run(settings: Settings) -> None:
                 )
             )
             progress(*rows[-1])
-        p = stats.fisher_exact([[hits[name], n_runs - hits[name]] for name in found]).pvalue
+        p = stats.fisher_exact([[hits[name], n_runs - hits[name]] for name in found])[1]
         show(
             f"{grid.name}, {grid.n_occupied} obstacles, {n_runs} runs of each: the shortest path, p = {p:.2g} (Fisher)",
             ("objectives", "published", "runs that end with it", "ratio, projected", "merged", "least turn", "merged"),
@@ -64,9 +64,9 @@ def draw(settings: Settings, name: str, found: dict[tuple, Runs], truth: Referen
     three = found[THREE].merged
     if not settings.output or not three.feasible:
         return
-    settings.save(plot_front(three).figure, f"{name}-figure-8a")
+    settings.save(plot_front(three), f"{name}-figure-8a")
     ax = plot_front(three, objectives=TWO)
     ax.plot(*truth.points.T, "k.", label="exact front of two objectives")
     ax.legend()
-    settings.save(ax.figure, f"{name}-figure-8b")
+    settings.save(ax, f"{name}-figure-8b")
     draw_map(settings, f"{name}-figure-9", three.problem.grid, {"path H, the smoothest": three.smoothest.cells})

@@ -75,7 +75,7 @@ class SugiharaSmithRepresentation(BinaryRepresentation):
         """Return which paths have a code, bool, shape (N,)."""
         step = (paths.enter[:, 1:] - paths.leave[:, :-1])[:, :-1]
         gain = np.diff(paths.leave[:, :-1], axis=1)
-        return (step * gain <= 1).all(axis=1)
+        return np.asarray((step * gain <= 1).all(axis=1))
 
 
 def _diagonal(direction: np.ndarray) -> np.ndarray:
