@@ -18,6 +18,7 @@ from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import AXES, check_problem_settings, make_spec, set_fields, set_given
 from pymoo_gridpath.study.specification.kinds import OBJECTIVE
 from pymoo_gridpath.study.specification.moving import MovingObstacles, check_moving
+from pymoo_gridpath.study.specification.values import Where
 
 UNKNOWN = ("free", "occupied")
 # What says which steps a grid has.
@@ -209,6 +210,26 @@ class ProblemSpec:
             return self.grid.name
         source = str(self.map or self.scen)
         return Path(source.removesuffix(".scen")).stem
+
+
+def problem_in(item: Any, where: Where, folder: Path) -> ProblemSpec:
+    """Return a problem of a study; files of objectives in its table are looked for in the study's folder, as maps are."""
+    if isinstance(item, Mapping) and isinstance(item.get("objectives"), list | tuple):
+        item = {**item, "objectives": [_with_files(one, folder) for one in item["objectives"]]}
+    return make_spec(ProblemSpec, item, where)
+
+
+def _with_files(item: Any, folder: Path) -> Any:
+    """Return an objective, a table with its files where they are."""
+    if not isinstance(item, Mapping):
+        return item
+    try:
+        files = own.read({"class": item.get("class")}, OBJECTIVE, ("objectives",)).cls.files
+    except StudyError:
+        # It is said by whoever makes the problem.
+        return item
+    found = {key: str((folder / item[key]).absolute()) for key in files if isinstance(item.get(key), str)}
+    return {**item, **found}
 
 
 def _objectives(value: Any) -> tuple[Any, ...]:
