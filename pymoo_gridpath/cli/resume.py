@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pymoo_gridpath.cli.arguments import folder
+from pymoo_gridpath.cli.arguments import folder, options_besides, refuse_given
 from pymoo_gridpath.errors import GridPathError, counted, visible
 
 if TYPE_CHECKING:
@@ -43,8 +43,7 @@ def add_resume(plan, group) -> None:
         help="begin with the last populations that a plan left in this folder, on its map and with its query, representation "
         "and objectives: a new start from there, with random numbers of its own",
     )
-    options = {action.dest: (action.option_strings or [action.metavar])[-1] for action in reversed(plan._actions)}
-    plan.set_defaults(options={dest: (name, plan.get_default(dest)) for dest, name in options.items() if dest not in _HEEDED})
+    plan.set_defaults(decided_by_plan=options_besides(plan, _HEEDED))
 
 
 def read_stored(arguments) -> Stored:
@@ -60,9 +59,7 @@ def read_stored(arguments) -> Stored:
 
     from pymoo_gridpath.decision import load_json
 
-    for dest, (name, default) in arguments.options.items():
-        if dest != "help" and getattr(arguments, dest) != default:
-            raise GridPathError(f"{name} is not for --resume, which takes the map and the problem from the folder")
+    refuse_given(arguments, arguments.decided_by_plan, "--resume, which takes the map and the problem from the folder")
     if "sampling" in (arguments.operators or {}):
         raise GridPathError("--operators sampling is not for --resume, which begins with the stored population")
     where = arguments.resume

@@ -1,5 +1,6 @@
 """The suite for representations: all codings pass it, one with two methods of its own too, and faults do not."""
 
+import functools
 import inspect
 import itertools
 
@@ -77,6 +78,7 @@ class RealHeadings(Headings):
         AbsoluteRepresentation,
         SugiharaSmithRepresentation,
         CellSequence,
+        pytest.param(functools.partial(CellSequence, backtracking=False), id="CellSequence without backtracking"),
         Headings,
         RealHeadings,
     ],

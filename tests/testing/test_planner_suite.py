@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pymoo.optimize import minimize
 
 from pymoo_gridpath.algorithms import find_algorithm, make_algorithm
 from pymoo_gridpath.errors import CapabilityError, GridPathError
@@ -97,3 +98,28 @@ def test_a_planner_of_ones_own_is_legal_or_named():
     with pytest.raises(GridPathError, match="the planner Illegal returned 1 path of which number 0 crosses"):
         TestExactFront.run(type("S", (PlannerSuite,), {"make": lambda self: Illegal()})(), problem)
     assert make_algorithm("exact", problem, max_labels=3).budget.max_labels == 3
+
+
+def test_a_planner_may_hand_over_plans_on_the_way():
+    class Two(Planner):
+        ends = True
+
+        def plan(self, problem):
+            *_, last = self.plans(problem)
+            return last
+
+        def plans(self, problem):
+            X = problem.pareto_set()
+            yield Plan(X[:1], False, "one found", final=False)
+            if self.ends:
+                yield Plan(X, message="all found")
+
+    problem = TestExactFront().problem()
+    seen = []
+    result = minimize(
+        problem, Two(), ("n_gen", 1), callback=lambda algorithm: seen.append((len(algorithm.opt), algorithm.message))
+    )
+    assert seen == [(1, "one found"), (len(problem.pareto_set()), "all found")] and seen[1][0] > 1
+    assert result.success is True and result.algorithm.n_gen == 3
+    with pytest.raises(GridPathError, match="the planner Two returned None, expected a Plan"):
+        minimize(problem, type("Two", (Two,), {"ends": False})())

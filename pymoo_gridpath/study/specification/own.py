@@ -311,7 +311,8 @@ def _arguments(cls: type, name: str, given: Mapping[str, Any], where: Where) -> 
 def _arguments_of(thing: Any, kind: Kind, where: Where) -> dict[str, Any]:
     """Return the arguments that make an object like the one that is given."""
     cls = type(thing)
-    kept = {key: held(thing, key) for key in parameters_of(cls) if key not in _ELSEWHERE and hasattr(thing, key)}
+    elsewhere = _ELSEWHERE if isinstance(thing, Representation) else _INHERITED
+    kept = {key: held(thing, key) for key in parameters_of(cls) if key not in elsewhere and hasattr(thing, key)}
     needed = [item.name for item in inspect.signature(cls).parameters.values() if item.default is item.empty][
         len(_leading(thing)) :
     ]
