@@ -6,7 +6,7 @@ row, to judge by its whole numbers of obstacles; ``--scenarios 1`` does the same
 NSGA-II with 200 individuals until the first legal path, or for 500 generations. The paper's lengths look like those of
 runs that went on to the last generation, though it says that they ended with the first legal path: ``--full`` goes on.
 
-Run with ``python benchmarks/table1.py``; ``--help`` lists the options. The whole table takes about an hour on two cores.
+Run with ``python benchmarks/table1.py``; ``--help`` lists the options. ``python benchmarks/paper.py --section 6`` has it, too.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from __future__ import annotations
 import argparse
 import os
 import time
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Collection
+from concurrent.futures import Executor, ProcessPoolExecutor
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -25,9 +26,12 @@ import numpy as np
 from pymoo.core.callback import Callback
 from pymoo.optimize import minimize
 from pymoo.termination.max_gen import MaximumGenerationTermination
+from scipy import stats
 
 from pymoo_gridpath.algorithms import FirstLegalPath, ahmed_deb_2013
 from pymoo_gridpath.problems import random_dense_grid
+
+SIZES = (8, 16, 32)
 
 # Grid size, p0, obstacles, success in percent, median generations, mean length: the paper's Table 1.
 PAPER = [
@@ -83,12 +87,12 @@ class FirstLegalGeneration(Callback):
             self.generation = algorithm.n_gen
 
 
-def run(number: int, size: int, p0: float, n_scenarios: int, n_gen: int, full: bool) -> Run:
+def run(number: int, size: int, p0: float, n_scenarios: int, n_gen: int, full: bool, pop_size: int) -> Run:
     """Search one of the row's scenarios for a legal path."""
     scenario = 1 + (number - 1) % n_scenarios
     grid = random_dense_grid(size, p0, np.random.default_rng([size, round(100 * p0), scenario]))
     termination = MaximumGenerationTermination(n_gen) if full else FirstLegalPath(n_gen)
-    setup = ahmed_deb_2013(grid, (0, 0), (size - 1, size - 1), pop_size=200, termination=termination)
+    setup = ahmed_deb_2013(grid, (0, 0), (size - 1, size - 1), pop_size=pop_size, termination=termination)
     callback = FirstLegalGeneration()
     pop = minimize(*setup, seed=number, callback=callback).pop
     assert pop is not None
@@ -98,47 +102,68 @@ def run(number: int, size: int, p0: float, n_scenarios: int, n_gen: int, full: b
     return Run(found, callback.generation or n_gen, float(length), grid.n_occupied)
 
 
+def table(
+    pool: Executor,
+    sizes: Collection[int] = SIZES,
+    p0s: Collection[float] = (),
+    n_runs: int = 100,
+    n_scenarios: int | None = None,
+    n_gen: int = 500,
+    full: bool = False,
+    pop_size: int = 200,
+) -> None:
+    """Run the rows of some sizes and probabilities, all by default, and print them beside the paper's.
+
+    Parameters
+    ----------
+    n_scenarios : int, optional
+        Scenarios shared out among a row's runs; by default one for each.
+    full : bool
+        Whether runs go on to the last generation after their first legal path.
+    """
+    when = "at the last generation" if full else "at the first legal path"
+    n_scenarios = n_scenarios or n_runs
+    print(f"{n_runs} runs a row on {n_scenarios} scenario(s), lengths {when}; ours beside the paper's, intervals of 95 %")
+    print("grid     p0 |      obstacles |          success % | median generations |     mean length |  seconds a run")
+    start = time.perf_counter()
+    n_all, outside = 0, []
+    for size, p0, obstacles, success, generations, length in PAPER:
+        if size not in sizes or (p0s and p0 not in p0s):
+            continue
+        row_start = time.perf_counter()
+        job = partial(run, size=size, p0=p0, n_scenarios=n_scenarios, n_gen=n_gen, full=full, pop_size=pop_size)
+        runs = list(pool.map(job, range(1, n_runs + 1)))
+        n_all += n_runs
+        found = [r for r in runs if r.found]
+        percent = 100.0 * len(found) / n_runs
+        low, high = stats.binomtest(len(found), n_runs).proportion_ci(method="wilson")
+        if not 100 * low <= success <= 100 * high:
+            outside.append(f"{size} x {size} at p0 = {p0:g}")
+        median = np.median([r.generations for r in found]) if found else np.nan
+        mean = np.nanmean([r.length for r in found]) if found else np.nan
+        cost = (time.perf_counter() - row_start) / n_runs
+        print(
+            f"{size:>2} x {size:<2} {p0:>4.1f} | {np.mean([r.obstacles for r in runs]):>7.1f} {obstacles:>6} | "
+            f"{percent:>4.0f} [{100 * low:>3.0f}, {100 * high:>3.0f}] {success:>4} | {median:>9.1f} {generations:>8} | "
+            f"{mean:>8.2f} {length:>6.2f} | {cost:>10.2f}",
+            flush=True,
+        )
+    print(f"{n_all} runs in {time.perf_counter() - start:.0f} s")
+    print("rows whose interval leaves out the paper's success: " + (", ".join(outside) or "none"))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0])
-    parser.add_argument("--sizes", type=int, nargs="+", choices=(8, 16, 32), default=(8, 16, 32), help="grid sizes")
-    parser.add_argument("--p0", type=float, nargs="+", help="obstacle probabilities (default: all)")
+    parser.add_argument("--sizes", type=int, nargs="+", choices=SIZES, default=SIZES, help="grid sizes")
+    parser.add_argument("--p0", type=float, nargs="+", default=(), help="obstacle probabilities (default: all)")
     parser.add_argument("--runs", type=int, default=100, help="runs of each row")
     parser.add_argument("--scenarios", type=int, help="random scenarios shared out among a row's runs (default: one for each)")
     parser.add_argument("--generations", type=int, default=500)
     parser.add_argument("--full", action="store_true", help="go on to the last generation after the first legal path")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
-    arguments = parser.parse_args()
-
-    when = "at the last generation" if arguments.full else "at the first legal path"
-    arguments.scenarios = arguments.scenarios or arguments.runs
-    print(f"{arguments.runs} runs a row on {arguments.scenarios} scenario(s), lengths {when}; ours beside the paper's")
-    print("grid     p0 |      obstacles |   success % | median generations |     mean length |  seconds a run")
-    start = time.perf_counter()
-    n_runs, failed_rows = 0, []
-    with ProcessPoolExecutor(arguments.jobs) as pool:
-        for size, p0, obstacles, success, generations, length in PAPER:
-            if size not in arguments.sizes or (arguments.p0 and p0 not in arguments.p0):
-                continue
-            row_start = time.perf_counter()
-            job = partial(
-                run, size=size, p0=p0, n_scenarios=arguments.scenarios, n_gen=arguments.generations, full=arguments.full
-            )
-            runs = list(pool.map(job, range(1, arguments.runs + 1)))
-            n_runs += len(runs)
-            found = [r for r in runs if r.found]
-            percent = 100.0 * len(found) / len(runs)
-            if percent < success - 15:
-                failed_rows.append(f"{size} x {size} at p0 = {p0:g}")
-            median = np.median([r.generations for r in found]) if found else np.nan
-            mean = np.nanmean([r.length for r in found]) if found else np.nan
-            cost = (time.perf_counter() - row_start) * arguments.jobs / len(runs)
-            print(
-                f"{size:>2} x {size:<2} {p0:>4.1f} | {np.mean([r.obstacles for r in runs]):>7.1f} {obstacles:>6} | "
-                f"{percent:>5.0f} {success:>5} | {median:>9.1f} {generations:>8} | {mean:>8.2f} {length:>6.2f} | {cost:>10.2f}",
-                flush=True,
-            )
-    print(f"{n_runs} runs in {time.perf_counter() - start:.0f} s on {arguments.jobs} processes")
-    print("rows more than 15 points below the paper's success: " + (", ".join(failed_rows) or "none"))
+    given = parser.parse_args()
+    with ProcessPoolExecutor(given.jobs) as pool:
+        table(pool, given.sizes, given.p0, given.runs, given.scenarios, given.generations, given.full)
 
 
 if __name__ == "__main__":

@@ -69,7 +69,8 @@ def ahmed_deb_2013(
         The paper's grids have ``corner_cutting=True``.
     start, goal : (int, int)
         Cells (x, y); in the paper the bottom-left and the top-right corner.
-    representation : {"integer", "binary", "mixed", "absolute"}, default "integer"
+    representation : {"integer", "binary", "mixed", "absolute", "sugihara-smith"}, default "integer"
+        The last is not the paper's, but the one that it improves on (section 2.1).
     objectives : sequence of str or Objective, default ("length", "vulnerability")
         By the name "vulnerability" the paper's is meant, whatever the map: `Vulnerability` with a variance of 0.5 squared
         cells.

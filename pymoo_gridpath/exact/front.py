@@ -102,7 +102,8 @@ def exact_front(
     ------
     CapabilityError
         If there are more than three objectives besides those of which the worst cell decides, one of these does not add up, see
-        `integer_costs`, or by one of them a detour may be the better way and the representation codes none. With ``epsilon`` or
+        `integer_costs`, or by one of them a detour may be the better way and the representation codes none; or if it does not
+        code every path. With ``epsilon`` or
         ``share``, if there are three, a potential limit, obstacles that move, or costs that have to be rounded.
     GridPathError
         If the problem is no path problem, a score is not the sum of what its objective says, or ``epsilon`` and ``share`` are
@@ -131,6 +132,11 @@ def better_fronts(
     moves = representation_of(problem).moves
     checks.instance("budget", budget, Budget, optional=True)
     allowance = Allowance(epsilon, share)
+    if not problem.representation.codes_all:
+        raise CapabilityError(
+            f"the {problem.representation.name} representation does not code every path, expected one that does for an exact "
+            f"front, such as 'integer' or 'cells'"
+        )
     if problem.representation.timed:
         refuse(allowance, "obstacles that move")
         return _front_in_time(problem, budget)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import CapabilityError, GridPathError
 from pymoo_gridpath.objectives import Objective, avoiding_costs, field_of, moves_of, visiting_costs
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import Representation, max_cells, representation_of
@@ -30,7 +30,7 @@ def terrain_of(problem) -> Terrain:
     Raises
     ------
     GridPathError
-        If the problem has no path representation.
+        If the problem has no path representation, or one that does not code every path.
     """
     return _known_of(problem)[1]
 
@@ -42,6 +42,11 @@ def _known_of(problem) -> tuple[Representation, Terrain, list[int]]:
         raise GridPathError(
             f"these operators know nothing of time, and the problem is of the class {type(problem).__name__}, expected those "
             f"of path_operators(problem)"
+        )
+    if not representation.codes_all:
+        raise CapabilityError(
+            f"path-aware operators make paths that the {representation.name} representation does not code, expected one that "
+            f"codes every path, such as 'integer' or 'cells'; paper_operators are for the codings of the paper"
         )
     known = _TERRAINS.get(problem)
     if known is None or known[0] is not representation:

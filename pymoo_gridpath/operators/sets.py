@@ -163,7 +163,7 @@ def path_operators(problem, sampling: Literal["scalarized", "random"] = "scalari
     Raises
     ------
     GridPathError
-        If the sampling is unknown, or the problem has no path representation.
+        If the sampling is unknown, or the problem has no path representation, or one that does not code every path.
     """
     checks.one_of("sampling", sampling, PATH_SAMPLINGS)
     timed = representation_of(problem).timed

@@ -262,11 +262,13 @@ def settled(problem, sequences: Sequences, message: str) -> Plan:
     representation, n = problem.representation, len(sequences.lengths)
     fits = representation.fits(sequences)
     if not fits.all():
-        longest = sequences.lengths.max()
-        message += (
-            f"; {n - fits.sum()} of {counted(n, 'path')} left out, the longest visits {longest} cells, a row has room for "
-            f"{representation.max_cells}"
+        room = representation.max_cells
+        why = (
+            f"the longest visits {sequences.lengths.max()} cells, a row has room for {room}"
+            if room is not None
+            else f"which the {representation.name} representation does not code"
         )
+        message += f"; {n - fits.sum()} of {counted(n, 'path')} left out, {why}"
     X = representation.from_sequences(sequences.take(fits))
     if problem.obstacles == "limit" and len(X):
         keeps = problem.evaluate(X, return_values_of=["G"])[:, 0] <= 0

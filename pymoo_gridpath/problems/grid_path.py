@@ -65,7 +65,8 @@ class GridPathProblem(Problem):
     representation : str, type or Representation, optional
         How a path is coded as decision variables: one of `REPRESENTATIONS` by name, a class of your own, or an object made for
         the same query. "cells" codes every path, see `CellSequence`, and needs `path_operators`; "integer", "binary", "mixed"
-        and "absolute" are those of the paper, for paths that never turn back along an axis. The default is "cells", and
+        and "absolute" are those of the paper, for paths that never turn back along an axis, of which "sugihara-smith" codes
+        some. The default is "cells", and
         "integer" where corners may be cut, which is the world of the paper, or an ``axis`` is given, see
         `default_representation`.
     objectives : sequence of str or Objective, default ("length", "vulnerability")

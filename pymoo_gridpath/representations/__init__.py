@@ -8,6 +8,7 @@ from pymoo_gridpath.representations.factory import default_representation, make_
 from pymoo_gridpath.representations.integer import IntegerRepresentation
 from pymoo_gridpath.representations.mixed import MixedRepresentation
 from pymoo_gridpath.representations.monotone import MonotoneRepresentation
+from pymoo_gridpath.representations.sugihara_smith import SugiharaSmithRepresentation
 from pymoo_gridpath.representations.timed_paths import TimedPaths
 from pymoo_gridpath.search.moves import Moves
 
@@ -21,6 +22,7 @@ __all__ = [
     "MonotoneRepresentation",
     "Moves",
     "Representation",
+    "SugiharaSmithRepresentation",
     "TimedPaths",
     "default_representation",
     "make_representation",

@@ -58,6 +58,9 @@ class Representation(ABC):
         Whether its paths advance along an axis, which its constructor takes as ``axis``.
     codes_detours : bool
         Whether a path that takes two steps where a single one leads has a code, too.
+    codes_all : bool
+        Whether each legal path along its `moves` but such detours has a code, if a row has room for it; else `fits` says which
+        have, `path_operators` are not for it, and there is no exact front of what it can say.
     wants_fields : bool
         Whether its constructor takes ``fields``, the costs of cells that paths are to be scored by, and ``spare``, by what
         factor paths worth coding may be longer than the cheapest, see `make_representation`.
@@ -111,6 +114,7 @@ class Representation(ABC):
     paper: bool = False
     monotone: bool = False
     codes_detours: bool = True
+    codes_all: bool = True
     wants_fields: bool = False
     backtracking: bool = True
     timed: bool = False
@@ -172,7 +176,7 @@ class Representation(ABC):
         return Moves(self.grid, box=self.box)
 
     def fits(self, sequences: Sequences) -> np.ndarray:
-        """Return which paths are no longer than a row can code, bool, shape (N,); by default by `max_cells`."""
+        """Return which paths have a code, bool, shape (N,); by default those of no more than `max_cells`."""
         lengths = check_sequences(sequences, self.moves.n_cells).lengths
         return np.ones(len(lengths), dtype=bool) if self.max_cells is None else lengths <= self.max_cells
 

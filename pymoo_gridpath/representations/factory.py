@@ -16,8 +16,16 @@ from pymoo_gridpath.representations.binary import BinaryRepresentation
 from pymoo_gridpath.representations.cell_sequence import CellSequence
 from pymoo_gridpath.representations.integer import IntegerRepresentation
 from pymoo_gridpath.representations.mixed import MixedRepresentation
+from pymoo_gridpath.representations.sugihara_smith import SugiharaSmithRepresentation
 
-for _cls in (IntegerRepresentation, BinaryRepresentation, MixedRepresentation, AbsoluteRepresentation, CellSequence):
+for _cls in (
+    IntegerRepresentation,
+    BinaryRepresentation,
+    MixedRepresentation,
+    AbsoluteRepresentation,
+    SugiharaSmithRepresentation,
+    CellSequence,
+):
     REPRESENTATIONS.register(_cls)
 
 
@@ -65,8 +73,8 @@ def make_representation(
     Parameters
     ----------
     representation : str or type
-        One of `REPRESENTATIONS`: "integer", "binary", "mixed", "absolute", "cells", or another that is registered; or the class
-        itself.
+        One of `REPRESENTATIONS`: "integer", "binary", "mixed", "absolute", "sugihara-smith", "cells", or another that is
+        registered; or the class itself.
     grid : OccupancyGrid
     start, goal : (int, int)
         Cells (x, y).

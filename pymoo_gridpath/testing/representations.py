@@ -11,7 +11,8 @@ import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 
-from pymoo_gridpath.errors import GridPathError, UnreachableError
+from pymoo_gridpath.errors import CapabilityError, GridPathError, UnreachableError
+from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.grid import Cell, OccupancyGrid
 from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.operators import default_operators, path_operators
@@ -209,9 +210,20 @@ class RepresentationSuite:
         sequences = Sequences(np.concatenate(cells), np.cumsum([0, *map(len, cells)]))
         fits = coding.fits(sequences)
         assert fits.shape == (len(found),) and fits.dtype == bool
-        shortest = sequences.lengths == sequences.lengths.min()
-        assert fits[shortest].all(), "a shortest path does not fit"
+        if coding.codes_all:
+            shortest = sequences.lengths == sequences.lengths.min()
+            assert fits[shortest].all(), "a shortest path does not fit"
+        else:
+            assert fits.any(), "no legal path has a code"
+            self._refuses(coding, sequences, fits)
         return sequences.take(fits)
+
+    @staticmethod
+    def _refuses(coding, sequences: Sequences, fits: np.ndarray) -> None:
+        """See that paths which do not fit are refused, each alone."""
+        for k in np.flatnonzero(~fits):
+            with pytest.raises(GridPathError):
+                coding.from_sequences(sequences.take(np.array([k])))
 
     def _legal_rows(self, coding) -> np.ndarray:
         return coding.from_sequences(self._legal(coding))
@@ -287,6 +299,10 @@ class RepresentationSuite:
     @pytest.mark.parametrize("operators", [default_operators, path_operators])
     def test_searches_find_legal_paths(self, coding, operators):
         problem = GridPathProblem(coding.grid, coding.start, coding.goal, coding, ["length", "vulnerability", "turn"])
+        if operators is path_operators and not coding.codes_all:
+            with pytest.raises(CapabilityError, match="does not code"):
+                operators(problem)
+            return
         F = []
         for _ in range(2):
             search: Any = NSGA2(pop_size=12, **operators(problem))
@@ -309,6 +325,10 @@ class RepresentationSuite:
 
     def test_exact_fronts_have_rows(self, coding):
         problem = GridPathProblem(coding.grid, coding.start, coding.goal, coding)
+        if not coding.codes_all:
+            with pytest.raises(CapabilityError, match="does not code"):
+                exact_front(problem)
+            return
         X: Any = problem.pareto_set(max_seconds=None)
         F: Any = problem.pareto_front(max_seconds=None)
         assert X is not None and len(X) == len(F) > 0

@@ -14,7 +14,7 @@ from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.testing import reference
 from pymoo_gridpath.testing.enumeration import RULES
 
-NAMES = ["absolute", "binary", "integer", "mixed"]
+NAMES = ["absolute", "binary", "integer", "mixed", "sugihara-smith"]
 
 
 @given(queries(), st.sampled_from(NAMES))
@@ -92,7 +92,7 @@ def test_repair_keeps_paths_on_the_grid_and_is_idempotent(query, name):
     assert np.array_equal(repaired[inside], X[inside])
 
 
-@pytest.mark.parametrize("name", ["integer", "mixed", "binary"])
+@pytest.mark.parametrize("name", ["integer", "mixed", "binary", "sugihara-smith"])
 @pytest.mark.parametrize("up", [True, False])
 def test_edge_fixing_draws_rows_by_the_linear_distribution(name, up):
     """From row r towards the edge, row j is drawn with a probability proportional to |j - r| (section 2.1)."""

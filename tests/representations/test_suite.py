@@ -22,6 +22,7 @@ from pymoo_gridpath.representations import (
     IntegerRepresentation,
     MixedRepresentation,
     Representation,
+    SugiharaSmithRepresentation,
     make_representation,
 )
 from pymoo_gridpath.testing import MapFormatSuite, OperatorSuite, PlannerSuite, RepresentationSuite
@@ -75,6 +76,7 @@ class RealHeadings(Headings):
         BinaryRepresentation,
         MixedRepresentation,
         AbsoluteRepresentation,
+        SugiharaSmithRepresentation,
         CellSequence,
         pytest.param(functools.partial(CellSequence, backtracking=False), id="CellSequence without backtracking"),
         Headings,
@@ -235,6 +237,13 @@ class BreaksLegalRows(Headings):
         return X
 
 
+class RefusesWhatItCodes(Headings):
+    codes_all = False
+
+    def fits(self, sequences):
+        return np.arange(len(sequences.lengths)) > 0
+
+
 class CannotBeCopied(Headings):
     def __reduce__(self):
         return type(self), (self.grid, self.goal, self.start)
@@ -254,6 +263,7 @@ FAULTS = {
     WrongTurn: "test_measures_are_those_of_the_reference",
     WrongTotal: "test_measures_are_those_of_the_reference",
     BreaksLegalRows: "test_repair_returns_new_rows_and_keeps_legal_paths",
+    RefusesWhatItCodes: "test_rows_of_sequences_are_genes",
     CannotBeCopied: "test_copies_decode_alike",
 }
 

@@ -1,0 +1,64 @@
+"""Section 5.3: binary, mixed and integer coding on 32 x 32 cells with 173 obstacles, ten runs each, merged.
+
+The tests are those of Mann and Whitney, over the runs.
+"""
+
+from __future__ import annotations
+
+from paper_sections.base import (
+    Settings,
+    draw_set,
+    exact,
+    median,
+    progress,
+    ratio,
+    several,
+    show,
+)
+from pymoo_gridpath.plotting.style import new_axes
+from pymoo_gridpath.study.report.statistics.significance import mann_whitney
+
+CODINGS = {"integer": "clearly better", "mixed": "between", "binary": "consistently poor"}
+
+
+def run(settings: Settings) -> None:
+    grid, n_runs = settings.scattered(32, 173, 1), settings.n_runs(10, 31)
+    truth, found, rows = exact(grid), {}, []
+    for name, published in CODINGS.items():
+        runs = found[name] = several(settings, grid, n_runs, representation=name)
+        ratios = runs.ratios(truth)
+        p = mann_whitney(found["integer"].ratios(truth), ratios).p
+        legal = sum(one.feasible for one in runs.each)
+        rows.append(
+            (
+                name,
+                published,
+                median(ratios),
+                f"{ratio(runs.merged, truth):.4f}",
+                f"{legal} of {n_runs}",
+                "" if name == "integer" else f"{p:.2g}",
+            )
+        )
+        progress(*rows[-1])
+    show(
+        f"{grid.name}, {grid.n_occupied} obstacles (the published layout is lost), {n_runs} runs of each",
+        (
+            "coding",
+            "published, in words",
+            "hypervolume ratio",
+            "merged",
+            "with a legal path",
+            "p against integer",
+        ),
+        rows,
+    )
+    if settings.output:
+        ax = new_axes((5.0, 4.0))
+        for (name, runs), marker in zip(found.items(), "o^s", strict=True):
+            for k, one in enumerate(one for one in runs.each if one.feasible):
+                ax.plot(*one.F.T, marker, color=f"C{'o^s'.index(marker)}", markersize=3, label=name if k == 0 else None)
+        ax.plot(*truth.points.T, "k-", linewidth=0.8, label="exact front")
+        ax.set(xlabel="length [cells]", ylabel="vulnerability")
+        ax.legend()
+        settings.save(ax, "section-5.3-figure-3")
+    draw_set(settings, "section-5.3-figure-4", found["integer"].merged, truth)
