@@ -52,9 +52,9 @@ LEAST2, BOUND1, BOUND2, FIELD1, FIELD2 = range(5)
 _ROUNDING = 1e-12
 
 # The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
-# They ask the less the later they come; several pay only on large grids.
+# They ask the less the later they come; several pay only on large grids, and none on small ones.
 _TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.02, 0.006, 0.002)
-_LARGE = 2**17
+_SMALL, _LARGE = 2**14, 2**17
 
 # Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.
 _CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
@@ -89,8 +89,7 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     known, found = hull.points, [Front(hull.paths, hull.points)]
     # What is proven takes time to work out, and matters where less than the front will do, or has to.
     proven = hull.certificate(known) if meter.message or allowance.name else None
-    tolerances = _TOLERANCES_ON_LARGE if hull.moves.n_cells > _LARGE else _TOLERANCES
-    for tolerance in (*tolerances, 0.0):
+    for tolerance in (*_tolerances(hull), 0.0):
         if meter.message or allowance.allows(proven):
             break
         search = _Search(hull, known, tolerance, allowance)
@@ -102,6 +101,14 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     early = meter.message or allowance.name
     front = merged(found) if early else Front(search.smoothest_paths(meter), search.points())
     return Front([moves.from_grid(hull.moves.to_grid(path)) for path in front.paths], front.points, proven)
+
+
+def _tolerances(hull: Hull) -> tuple[float, ...]:
+    """Return the tolerances of the passes before the last one."""
+    # Bits of paths whose costs depend on headings hang on the passes, see `smoothest_paths`.
+    if not hull.costs.with_heading and (len(hull.points) == 1 or hull.moves.n_cells <= _SMALL):
+        return ()
+    return _TOLERANCES_ON_LARGE if hull.moves.n_cells > _LARGE else _TOLERANCES
 
 
 def merged(fronts: list[Front]) -> Front:
