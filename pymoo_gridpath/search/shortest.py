@@ -127,7 +127,7 @@ class Backward:
             self.spent = np.zeros(moves.n_cells, dtype=np.int64)
 
     def _lists(self) -> tuple[int, int]:
-        """Return the width in first cost of the lists that states may be taken from, and how many it takes; 0 if they do not do.
+        """Return the width in first cost of the lists that states may be taken from, and how many; 0 if they do not do.
 
         A step that costs less than the width would lead from a list to itself. That does no harm in one of a single cost, if
         the second is the same.
