@@ -52,9 +52,11 @@ LEAST2, BOUND1, BOUND2, FIELD1, FIELD2 = range(5)
 _ROUNDING = 1e-12
 
 # The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
-# They ask the less the later they come; several pay only on large grids, and none on small ones.
+# They ask the less the later they come; several pay only on large grids, and none on small ones, nor on medium ones where the
+# hull is as near to the front as that.
 _TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.02, 0.006, 0.002)
-_SMALL, _LARGE = 2**14, 2**17
+_SMALL, _MEDIUM, _LARGE = 2**14, 2**16, 2**17
+_NEAR = Allowance(epsilon=0.02)
 
 # Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.
 _CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
@@ -105,10 +107,12 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
 
 def _tolerances(hull: Hull) -> tuple[float, ...]:
     """Return the tolerances of the passes before the last one."""
-    # Bits of paths whose costs depend on headings hang on the passes, see `smoothest_paths`.
-    if not hull.costs.with_heading and (len(hull.points) == 1 or hull.moves.n_cells <= _SMALL):
+    n_cells = hull.moves.n_cells
+    few = len(hull.points) == 1 or n_cells <= _SMALL or (n_cells <= _MEDIUM and _NEAR.allows(hull.certificate(hull.points)))
+    # Which of equal paths is found hangs on all labels where costs depend on headings, those of the passes too.
+    if few and not hull.costs.with_heading:
         return ()
-    return _TOLERANCES_ON_LARGE if hull.moves.n_cells > _LARGE else _TOLERANCES
+    return _TOLERANCES_ON_LARGE if n_cells > _LARGE else _TOLERANCES
 
 
 def merged(fronts: list[Front]) -> Front:
