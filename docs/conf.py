@@ -19,7 +19,8 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
 ]
-exclude_patterns = ["_build", "jupyter_execute", "README.md"]
+# What other pages include is no page.
+exclude_patterns = ["_build", "jupyter_execute", "README.md", "peers_measured.md"]
 templates_path = ["_templates"]
 suppress_warnings: list[str] = []
 
@@ -68,6 +69,8 @@ PLAIN_PAGES = (
     "companions",
     "planners",
     "papers",
+    "suites",
+    "peers",
     "maps",
     "explorer",
     "command_line",

@@ -355,6 +355,9 @@ def check_costs(name: str, field: ArrayLike, grid: OccupancyGrid) -> np.ndarray:
         If it is of another shape, holds what is no number, or a negative one, or in a free cell one that is not finite.
     """
     costs = check_field(name, field, grid).astype(float, order="C")
+    # As most are; of numbers that are none neither is true.
+    if costs.min() >= 0.0 and costs.max() < np.inf:
+        return costs
     finite = np.isfinite(costs)
     for wrong, expected in (
         (finite & (costs < 0.0), "zero or more, also in cells without data"),

@@ -178,10 +178,10 @@ _REGISTRIES: list[Registry] = []
 def register(cls: C) -> C:
     """Make a class of your own known by its name, wherever the package takes a name; a decorator.
 
-    What it is follows from what it inherits from: a `Representation`, an `Objective`, a `Planner`, a `MapFormat`, an operator
-    or an algorithm of pymoo. To be found without an import of its module, a class stands in the entry points of an installed
-    package instead: ``pymoo_gridpath.representations``, ``.objectives``, ``.operators``, ``.planners``, ``.map_formats`` or
-    ``.algorithms``.
+    What it is follows from what it inherits from: a `Representation`, an `Objective`, a `Planner`, a `MapFormat`, a
+    `Suite`, an operator or an algorithm of pymoo. To be found without an import of its module, a class stands in the entry
+    points of an installed package instead: ``pymoo_gridpath.representations``, ``.objectives``, ``.operators``, ``.planners``,
+    ``.map_formats``, ``.suites`` or ``.algorithms``.
 
     Parameters
     ----------

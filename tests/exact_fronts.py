@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from functools import lru_cache
 from itertools import chain
 
 import numpy as np
 
 from pymoo_gridpath import OccupancyGrid
+from pymoo_gridpath.exact import Certificate
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.testing.enumeration import RULES, STEPS, EnumeratedPath, enumerate_paths, non_dominated
 
@@ -104,3 +106,20 @@ def random_case(seed):
     start, goal = random_state.permutation([free[0], free[-1]]).tolist()
     representation = str(random_state.choice(["cells", "integer", "absolute", "binary", "mixed"], p=[0.5, 0.2, 0.1, 0.1, 0.1]))
     return grid, start, goal, representation
+
+
+def holds(certified: Certificate, F, front) -> bool:
+    """Whether a certificate is true of points with whole numbers, by its definition."""
+    F, front = ([[int(value) for value in row] for row in np.asarray(rows)] for rows in (F, front))
+    factor, share = 1 + Fraction(min(certified.epsilon, 1e30)), Fraction(certified.share)
+    ranges = [max(column) - min(column) for column in zip(*front, strict=True)]
+    return all(
+        any(all(a <= factor * b for a, b in zip(p, q, strict=True)) for p in F)
+        and any(all(a <= b + share * extent for a, b, extent in zip(p, q, ranges, strict=True)) for p in F)
+        for q in front
+    )
+
+
+def whole_costs(shape, seed, names="ab"):
+    draw = np.random.default_rng(seed)
+    return {name: draw.integers(0, int(draw.choice([2, 6, 1000])), shape) for name in names}

@@ -21,6 +21,7 @@ FLOORS = (
             "compiled",
             "deprecation",
             "files",
+            "interrupt",
             "lazy",
             "memory",
             "neighbourhood",

@@ -278,7 +278,7 @@ def _codings(w: World) -> dict[str, Call]:
         X = w.rows(coding)
         own = {"axis": "x"} if isinstance(coding, representations.MonotoneRepresentation) else {}
         if cls is representations.CellSequence:
-            own = {"max_cells": 20, "fields": [w.field], "spare": 2.0}
+            own = {"max_cells": 20, "fields": [w.field], "spare": 2.0, "backtracking": True}
             X = coding.repair(X, w.random)
         if cls is representations.TimedPaths:
             own = {"movers": w.timed.movers, "horizon": 12}
@@ -336,10 +336,20 @@ def _measured(cls, **arguments):
     return paths.length, paths.turn, paths.interfering_cells
 
 
+def _plans(planner):
+    """Return a function that has a planner yield all its plans."""
+
+    def plans(problem):
+        return list(planner.plans(problem))
+
+    return plans
+
+
 def _search(w: World) -> dict[str, Call]:
     front = np.array([[0.0, 4.0], [1.0, 1.0], [4.0, 0.0]])
     return {
         "ExactFront.plan": (algorithms.ExactFront().plan, {"problem": w.problem}),
+        "ExactFront.plans": (_plans(algorithms.ExactFront()), {"problem": w.problem}),
         "ExactFront.parameters": (algorithms.ExactFront.parameters, {}),
         "ExactFront.refuse": (algorithms.ExactFront.refuse, {"problem": w.problem}),
         **_planners(w),
@@ -416,6 +426,7 @@ def _planners(w: World) -> dict[str, Call]:
     for cls, given in arguments.items():
         found[cls.__name__] = (cls, given)
         found[f"{cls.__name__}.plan"] = (cls(**given).plan, {"problem": problem})
+        found[f"{cls.__name__}.plans"] = (_plans(cls(**given)), {"problem": problem})
         found[f"{cls.__name__}.parameters"] = (cls.parameters, {})
         found[f"{cls.__name__}.refuse"] = (cls.refuse, {"problem": problem})
     return found

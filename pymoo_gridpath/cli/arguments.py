@@ -7,8 +7,9 @@ import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
-from pymoo_gridpath.errors import visible
+from pymoo_gridpath.errors import GridPathError, visible
 
 EXIT_OK, EXIT_FAILED, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
 """Done; no legal path was found, or runs of a study failed; bad input; ended by Ctrl-C."""
@@ -125,3 +126,21 @@ def html_file(text: str) -> Path:
     if not text or path.is_dir() or not path.parent.is_dir():
         raise argparse.ArgumentTypeError(f"{text!r} is not a file in a folder that exists, expected one such as front.html")
     return path
+
+
+def options_besides(parser: argparse.ArgumentParser, heeded: Sequence[str]) -> dict[str, tuple[str, Any]]:
+    """Return how the options that a parser has so far are written, and their defaults, but for some of them."""
+    written = {action.dest: (action.option_strings or [action.metavar])[-1] for action in reversed(parser._actions)}
+    return {dest: (str(name), parser.get_default(dest)) for dest, name in written.items() if dest not in (*heeded, "help")}
+
+
+def refuse_given(arguments, options: dict[str, tuple[str, Any]], other: str) -> None:
+    """Refuse options that are given beside another one that has them without effect.
+
+    Raises
+    ------
+    GridPathError
+    """
+    for dest, (name, default) in options.items():
+        if getattr(arguments, dest) != default:
+            raise GridPathError(f"{name} is not for {other}")

@@ -14,6 +14,7 @@ from pymoo_gridpath.cli.explore import add_explore_command
 from pymoo_gridpath.cli.maps import add_map_commands
 from pymoo_gridpath.cli.plan import add_plan_command
 from pymoo_gridpath.cli.study import add_study_commands
+from pymoo_gridpath.cli.suites import add_suite_command
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.memory import is_want_of_memory, want_of_memory
 from pymoo_gridpath.progress import say, warnings_as_lines
@@ -81,5 +82,6 @@ def _parser() -> Parser:
     add_plan_command(commands)
     add_explore_command(commands)
     add_map_commands(commands)
+    add_suite_command(commands)
     add_study_commands(commands)
     return parser

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import os
-import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,14 +23,17 @@ from pymoo_gridpath.cli.ground import add_ground, given_ground, ground_of
 from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
 from pymoo_gridpath.cli.query import add_query, ends, grown
 from pymoo_gridpath.cli.resume import add_resume, read_stored, said, write_populations
+from pymoo_gridpath.cli.suites import add_suite, suite_problem
 from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
+from pymoo_gridpath.interrupt import StopOnCtrlC
 from pymoo_gridpath.progress import Progress, say
 
 if TYPE_CHECKING:
     from pymoo_gridpath.grid import OccupancyGrid
 
 DEFAULT_MAP = "warehouse"
+DEFAULT_OBJECTIVES = ["length", "vulnerability"]
 
 # Options that planners take, each those that its constructor does.
 PLANNERS_OWN = ("max_seconds", "epsilon", "share")
@@ -64,7 +66,6 @@ def add_plan_command(commands) -> None:
     search.add_argument(
         "--objectives",
         type=lambda text: text.split(","),
-        default=["length", "vulnerability"],
         metavar="A,B",
         help="some of length, vulnerability, turn, inflation, clearance (default: length,vulnerability)",
     )
@@ -125,6 +126,7 @@ def add_plan_command(commands) -> None:
     plan.add_argument("--html", type=html_file, metavar="FILE", help="write a page to choose a path from")
     plan.add_argument("--show", action="store_true", help="draw the map with the paths on a terminal that can")
     plan.add_argument("--units", choices=("cells", "m"), help="axes of the map figure (default: metres if the map has them)")
+    add_suite(plan, search)
     add_resume(plan, search)
 
 
@@ -140,8 +142,11 @@ def _plan(arguments) -> int:
 
     if arguments.resume is not None:
         return _go_on(arguments)
+    if arguments.suite is not None:
+        return _plan_suite(arguments)
     if arguments.obstacles == "limit" and arguments.potential_limit is None:
         raise GridPathError("--obstacles limit needs --potential-limit P0, the largest vulnerability that a path may have")
+    arguments.objectives = DEFAULT_OBJECTIVES if arguments.objectives is None else arguments.objectives
     map_name = arguments.map or DEFAULT_MAP
     grid = load(map_name, arguments)
     if arguments.units == "m":
@@ -173,6 +178,24 @@ def _plan(arguments) -> int:
         problem = GridPathProblem(grid, start, goal, representation, axis=arguments.axis, **settings)
     algorithm = None if standing else _algorithm(name, spec, problem, arguments)
     return _carry_out(problem, name, spec, algorithm, arguments, source, unknown)
+
+
+def _plan_suite(arguments) -> int:
+    """Plan on a problem of a suite."""
+    from pymoo_gridpath.algorithms import find_algorithm
+    from pymoo_gridpath.decision.provenance import describe_source
+
+    problem = suite_problem(arguments)
+    grid, arguments.objectives = problem.grid, problem.objective_names
+    if arguments.units == "m":
+        grid.check_resolution("--units m")
+    check_waypoint_options(arguments, grid)
+    name = arguments.algorithm or ("nsga2" if problem.n_obj > 1 else "ga")
+    spec = find_algorithm(name, problem.n_obj)
+    _settle_options(spec, name, arguments)
+    arguments.needs = _needed(grid, problem.start, problem.representation.name, arguments, spec.reference)
+    algorithm = _algorithm(name, spec, problem, arguments)
+    return _carry_out(problem, name, spec, algorithm, arguments, describe_source(grid), None)
 
 
 def _go_on(arguments) -> int:
@@ -216,7 +239,7 @@ def _carry_out(problem, name: str, spec, algorithm, arguments, source: dict, unk
     print(f"{visible(grid.name)}: {grid.width} x {grid.height} cells, from {start} to {goal}", flush=True)
     if unknown is not None:
         print(f"unknown: {unknown}", flush=True)
-    with _StopOnCtrlC() as stop:
+    with StopOnCtrlC() as stop:
         results = [] if standing else _search(problem, name, spec, algorithm, arguments, stop)
         stop.searching = False
         if results and not any(len(result.pop) for result in results):
@@ -226,9 +249,9 @@ def _carry_out(problem, name: str, spec, algorithm, arguments, source: dict, unk
 
     if stop.requested:
         print("interrupted: what was found until then follows", file=sys.stderr)
-    elif results and results[0].success is False:
+    if results and results[0].success is False:
         print(f"the front is not complete: the search {results[0].message}", file=sys.stderr)
-    elif results and (arguments.epsilon or arguments.share):
+    elif results and not stop.requested and (arguments.epsilon or arguments.share):
         print(f"{name}: {results[0].message}")
     print(trade_off.table(max_rows=MAX_ROWS))
     if arguments.show:
@@ -331,7 +354,7 @@ def _algorithm(name: str, spec, problem, arguments, start=None, **more):
     return make_algorithm(name, problem, **given)
 
 
-def _search(problem, name: str, spec, algorithm, arguments, stop: _StopOnCtrlC) -> list:
+def _search(problem, name: str, spec, algorithm, arguments, stop: StopOnCtrlC) -> list:
     """Return the Results of the runs, with progress shown, ended early if Ctrl-C asks for it."""
     from pymoo_gridpath.algorithms import minimize_runs
     from pymoo_gridpath.convergence import ConvergenceRecorder
@@ -340,14 +363,21 @@ def _search(problem, name: str, spec, algorithm, arguments, stop: _StopOnCtrlC) 
         progress.update(run, algorithm, _n_legal)
         return stop.requested
 
+    so_far: list[str] = []
+
+    def keep(run, planner):
+        so_far[:] = [planner.message]
+
     def watch(meter):
-        progress.note(f"{meter.n_labels:,} labels, {meter.elapsed:.0f} s")
+        progress.note(", ".join([*so_far, f"{meter.n_labels:,} labels", f"{meter.elapsed:.0f} s"]))
+        if stop.requested:
+            meter.message = "stopped by Ctrl-C"
         return stop.requested
 
     with Progress(arguments.runs, arguments.generations) as progress:
         if isinstance(spec, type):
             planner = _algorithm(name, spec, problem, arguments, watch=watch)
-            return minimize_runs(problem, planner, n_runs=arguments.runs, seed=arguments.seed)
+            return minimize_runs(problem, planner, n_runs=arguments.runs, seed=arguments.seed, observe=keep)
         termination = ("n_gen", arguments.generations)
         if not isinstance(algorithm, list):
             return minimize_runs(
@@ -399,28 +429,3 @@ def _make_directory(path: Path) -> None:
         raise GridPathError(f"the output directory {path} cannot be made: {error.strerror or error}") from None
     if not writable:
         raise GridPathError(f"the output directory {path} cannot be written to")
-
-
-class _StopOnCtrlC:
-    """While open, the first Ctrl-C asks the search to stop after the generation under way, the second ends it at once.
-
-    Once ``searching`` is False, Ctrl-C only makes a note, so that what was found is written.
-    """
-
-    def __init__(self):
-        self.requested = False
-        self.searching = True
-
-    def __enter__(self):
-        self._before = signal.signal(signal.SIGINT, self._request)
-        return self
-
-    def __exit__(self, *exception):
-        signal.signal(signal.SIGINT, self._before)
-
-    def _request(self, number, frame):
-        if self.requested and self.searching:
-            raise KeyboardInterrupt
-        if not self.requested:
-            print("\nstopping, and keeping what was found; Ctrl-C again ends at once and loses it", file=sys.stderr)
-        self.requested = True

@@ -6,17 +6,17 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pymoo_gridpath.cli.arguments import folder
+from pymoo_gridpath.cli.arguments import folder, options_besides, refuse_given
 from pymoo_gridpath.errors import GridPathError, counted, visible
 
 if TYPE_CHECKING:
     import numpy as np
 
-# What a plan leaves for one that goes on: the genes of the last population of each run.
+# What a plan leaves for one that goes on: the genes of the last population of each run, and what the ground costs.
 POPULATION = "population.npz"
 
-# More runs than this nobody has waited for.
-_MOST_RUNS = 1000
+# More runs than this, and a few arrays besides, nobody has waited for.
+_MOST_ARRAYS = 1000
 
 # All else is said by the stored plan.
 _HEEDED = (
@@ -43,8 +43,7 @@ def add_resume(plan, group) -> None:
         help="begin with the last populations that a plan left in this folder, on its map and with its query, representation "
         "and objectives: a new start from there, with random numbers of its own",
     )
-    options = {action.dest: (action.option_strings or [action.metavar])[-1] for action in reversed(plan._actions)}
-    plan.set_defaults(options={dest: (name, plan.get_default(dest)) for dest, name in options.items() if dest not in _HEEDED})
+    plan.set_defaults(decided_by_plan=options_besides(plan, _HEEDED))
 
 
 def read_stored(arguments) -> Stored:
@@ -53,35 +52,29 @@ def read_stored(arguments) -> Stored:
     Raises
     ------
     GridPathError
-        If the folder does not hold the plan of a search, its problem cannot be made again, or an option is given that the
-        stored plan decides.
+        If the folder does not hold the plan of a search, its problem cannot be made again, what is stored does not go together,
+        or an option is given that the stored plan decides.
     """
     import numpy as np
 
     from pymoo_gridpath.decision import load_json
-    from pymoo_gridpath.decision.stored import StoredObjective
 
-    for dest, (name, default) in arguments.options.items():
-        if dest != "help" and getattr(arguments, dest) != default:
-            raise GridPathError(f"{name} is not for --resume, which takes the map and the problem from the folder")
+    refuse_given(arguments, arguments.decided_by_plan, "--resume, which takes the map and the problem from the folder")
     if "sampling" in (arguments.operators or {}):
         raise GridPathError("--operators sampling is not for --resume, which begins with the stored population")
     where = arguments.resume
     trade_off = load_json(where / "paths.json")
     problem, file = trade_off.problem, where / POPULATION
-    unknown = [one.name for one in problem.objectives if isinstance(one, StoredObjective)]
-    if unknown:
-        raise GridPathError(
-            f"{visible(where)}: what the objective {unknown[0]!r} costs is not stored, expected a plan without it"
-        )
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
-            found = [arrays[f"run_{k}"] for k in range(min(len(arrays.files), _MOST_RUNS))]
+            stored = {key: arrays[key] for key in arrays.files[:_MOST_ARRAYS]}
     except FileNotFoundError:
         raise GridPathError(f"{visible(file)}: no such file, expected the plan of an algorithm with a population") from None
     except Exception:
         # What is no archive, or none of these arrays, fails in almost any way.
         raise GridPathError(f"{visible(file)}: the populations cannot be read, expected the file as a plan wrote it") from None
+    problem = _with_costs(problem, stored, trade_off, where)
+    found = [stored[key] for key in (f"run_{k}" for k in range(len(stored))) if key in stored]
     # An archive of none has none that fits.
     for X in found or [np.empty(0)]:
         fits = X.ndim == 2 and len(X) and X.shape[1] == problem.n_var and X.dtype.kind in "biuf"
@@ -90,6 +83,39 @@ def read_stored(arguments) -> Stored:
                 f"{visible(file)}: a population is not of the problem in paths.json, expected those of one plan"
             )
     return Stored(problem, found, trade_off.meta["settings"], trade_off.meta["seed"])
+
+
+def _with_costs(problem, stored: dict[str, np.ndarray], trade_off, where: Path):
+    """Return the problem with the objectives whose costs are stored, each of its class again."""
+    import numpy as np
+
+    from pymoo_gridpath.decision.stored import StoredObjective
+    from pymoo_gridpath.objectives import OBJECTIVES
+    from pymoo_gridpath.problems import GridPathProblem
+
+    objectives = list(problem.objectives)
+    for k, stated in enumerate(trade_off.meta["settings"]["objectives"]):
+        name = objectives[k].name
+        if not isinstance(objectives[k], StoredObjective):
+            continue
+        costs = {key: stored.get(_key(name, key)) for key in (OBJECTIVES[name].files if name in OBJECTIVES else ())}
+        if not costs or any(values is None for values in costs.values()):
+            raise GridPathError(
+                f"{visible(where)}: what the objective {name!r} costs is not stored, expected a plan without it"
+            )
+        objectives[k] = OBJECTIVES[name](**{**costs, **{key: value for key, value in stated.items() if key != "name"}})
+    if objectives == list(problem.objectives):
+        return problem
+    settings = problem.obstacles, problem.penalty, problem.potential_limit
+    made = GridPathProblem(problem.grid, problem.start, problem.goal, problem.representation, objectives, *settings)
+    if not np.allclose(np.asarray(made.evaluate(trade_off.X, return_values_of=["F"])), trade_off.F):
+        raise GridPathError(f"{visible(where)}: what the ground costs does not fit paths.json, expected the files of one plan")
+    return made
+
+
+def _key(objective: str, argument: str) -> str:
+    """Return what the costs that an objective was made of are stored as."""
+    return f"{objective}.{argument}"
 
 
 def said(stored: Stored, where: Path) -> str:
@@ -102,7 +128,7 @@ def said(stored: Stored, where: Path) -> str:
 
 
 def write_populations(results, folder: Path) -> list[Path]:
-    """Write the last population of each run, and return the file; a planner has none to go on from."""
+    """Write the last population of each run and what the ground costs, and return the file; a planner leaves none."""
     import numpy as np
 
     from pymoo_gridpath.files import write_whole
@@ -113,6 +139,11 @@ def write_populations(results, folder: Path) -> list[Path]:
         # Nor is there one of what stood here before.
         file.unlink(missing_ok=True)
         return []
+    objectives = results[0].problem.objectives
     data = io.BytesIO()
-    np.savez_compressed(data, **{f"run_{k}": result.pop.get("X") for k, result in enumerate(results)})
+    np.savez_compressed(
+        data,
+        **{f"run_{k}": result.pop.get("X") for k, result in enumerate(results)},
+        **{_key(one.name, key): getattr(one, key) for one in objectives for key in one.files},
+    )
     return [write_whole(file, data.getvalue())]

@@ -45,6 +45,7 @@ def describe_problem(problem) -> dict:
             "representation": representation.name,
             "axis": getattr(getattr(representation, "frame", None), "axis", None),
             "max_cells": representation.max_cells,
+            **({} if representation.backtracking else {"backtracking": False}),
             "objectives": [{"name": f.name, **_scalars(f)} for f in problem.objectives],
             "obstacles": getattr(problem, "obstacles", None),
             "penalty": getattr(problem, "penalty", None),

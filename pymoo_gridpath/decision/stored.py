@@ -195,7 +195,9 @@ def _problem(content: dict, grid: OccupancyGrid, start, goal) -> GridPathProblem
         return StandingProblem(grid, start, objectives, settings["obstacles"], penalty, settings["potential_limit"])
     cls: Any = REPRESENTATIONS[checks.known("representation", settings["representation"], REPRESENTATIONS)]
     takes = inspect.signature(cls).parameters
-    options = {key: settings[key] for key in ("axis", "max_cells") if key in takes and settings[key] is not None}
+    # Files say of backtracking only where there is none.
+    said = ("axis", "max_cells", "backtracking")
+    options = {key: settings[key] for key in said if key in takes and settings.get(key) is not None}
     return GridPathProblem(
         grid,
         start,

@@ -430,7 +430,7 @@ def _common_problem(runs: Sequence) -> Any:
     return first
 
 
-_MUST_AGREE = ("representation", "axis", "max_cells", "objectives", "potential_limit", "movers")
+_MUST_AGREE = ("representation", "axis", "max_cells", "backtracking", "objectives", "potential_limit", "movers")
 
 
 def _check_settings(settings: Mapping | None) -> None:

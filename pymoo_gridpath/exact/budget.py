@@ -71,7 +71,8 @@ class Budget:
     max_memory : int, optional
         Bytes of the arrays of the search; by default 70 % of what the machine has free when it begins.
     watch : callable, optional
-        Called now and then with the `Meter`, not always from the same thread; if it returns True, the search ends.
+        Called now and then with the `Meter`, not always from the same thread; if it returns True, the search ends. It may give
+        its reason as the meter's ``message``.
 
     Raises
     ------
@@ -152,5 +153,5 @@ class Meter:
             if self.elapsed >= self.seconds:
                 self.message = f"the time budget of {self.seconds:g} s is used up"
             elif self.watch is not None and self.watch(self):
-                self.message = "stopped by who watched it"
+                self.message = self.message or "stopped by who watched it"
         return bool(self.message)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import moocore
 import numpy as np
@@ -13,22 +11,17 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
-from pymoo_gridpath.exact.costs import DIRECT, Costs, integer_costs
-from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.levels import Known, cell_levels, over_levels
-from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate
-from pymoo_gridpath.exact.one import front_of_one
-from pymoo_gridpath.exact.three import front_of_three
+from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, together
+from pymoo_gridpath.exact.parts import Part, parts_of, refuse
+from pymoo_gridpath.exact.steps import Steps, last, mapped
 from pymoo_gridpath.exact.timed import exact_timed_front
-from pymoo_gridpath.exact.two import front_of_two
-from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.objectives import Length, Objective
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations import CellSequence
 from pymoo_gridpath.representations.base import max_cells, representation_of
-from pymoo_gridpath.search import UNREACHABLE, Moves
 
-# Lengths of paths across more cells could overflow.
+# Lengths of paths that visit more cells could overflow.
 _MOST_CELLS = 2**24
 
 # By which share of the largest a score may differ from the sum that was minimised.
@@ -36,12 +29,6 @@ _SAME = 1e-9
 
 # Of objectives whose costs had to be rounded, values that differ by no more than this share of themselves are equal.
 _EQUAL = 1e-12
-
-# Rounded costs of paths below so many units are counted anew in a finer one.
-_FINE = 2**42
-
-# A finer unit is worth a search if it is at most this share of the one before.
-_FINER = 1 / 16
 
 
 @dataclass(frozen=True)
@@ -129,25 +116,37 @@ def exact_front(
     >>> found.complete, found.F.round(2).tolist()
     (True, [[5.41, 0.66]])
     """
+    return last(better_fronts(problem, budget, epsilon=epsilon, share=share))
+
+
+def better_fronts(
+    problem, budget: Budget | None = None, *, epsilon: float | None = None, share: float | None = None
+) -> Steps[ExactResult, ExactResult]:
+    """Search as `exact_front` does, and hand over better and better results: what is known so far, and what is proven of it.
+
+    Of two objectives that add up, these are the ends of the front, points of its hull, and more; of three, larger and larger
+    parts of the front. Nothing is handed over of one, of paths in time, nor where the worst cell decides, since that takes many
+    searches. A result on the way is no ``success``, and paths that do not fit into a row are left out.
+    """
     moves = representation_of(problem).moves
     checks.instance("budget", budget, Budget, optional=True)
     allowance = Allowance(epsilon, share)
     if problem.representation.timed:
-        _refuse(allowance, "obstacles that move")
+        refuse(allowance, "obstacles that move")
         return _front_in_time(problem, budget)
     summed, worst = _kinds(problem)
     if len(summed) > 3:
         besides = " besides those of which the worst cell decides" if worst else ""
         raise CapabilityError(f"the problem has {len(summed)} objectives{besides}, expected at most 3 for an exact front")
-    if moves.n_cells >= _MOST_CELLS:
-        raise CapabilityError(
-            f"{moves.n_cells:,} cells of the grid are to be searched, expected fewer than {_MOST_CELLS:,} for an exact front"
-        )
+    if moves.n_cells > _MOST_CELLS:
+        n_cells = np.count_nonzero(moves.legal)
+        if n_cells > _MOST_CELLS:
+            raise CapabilityError(f"paths may visit {n_cells:,} cells, expected at most {_MOST_CELLS:,} for an exact front")
     if len(summed) == 3:
-        _refuse(allowance, "three objectives that add up")
+        refuse(allowance, "three objectives that add up")
     if problem.obstacles == "limit":
         # A path within it may be near to none but such that exceed it.
-        _refuse(allowance, "a potential limit")
+        refuse(allowance, "a potential limit")
     meter = Meter(budget or Budget())
     usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)
     objectives: list[Objective] = [problem.objectives[k] for k in summed]
@@ -156,14 +155,18 @@ def exact_front(
         # What else is to be minimised is searched many times; of paths that are equal in all, the shortest will do.
         objectives = [Known(one, problem.grid, moves.box) if one.additive else one for one in objectives or [Length()]]
 
-    def search(most=None):
-        def part(moves, usable):
-            return _search(problem, objectives, moves, usable, meter, allowance, set(), most)
+    def search(moves, usable, most=None):
+        return parts_of(problem, objectives, moves, usable, meter, allowance, set(), most)
 
+    def searched(most=None):
         ends = moves.index(problem.start), moves.index(problem.goal)
+        part = lambda moves, usable: last(search(moves, usable, most))  # noqa: E731
         return over_levels(levels, moves, usable, ends, not summed and most is None, meter, part)
 
-    parts = search()
+    if levels:
+        parts = searched()
+    else:
+        parts = yield from mapped(search(moves, usable), lambda parts: _so_far(problem, parts, most, meter, allowance))
     certified = _proven(parts)
     paths, F, X = _merged(problem, parts, early=bool(meter.message or allowance.name))
     longest = max(map(len, paths), default=0)
@@ -172,7 +175,7 @@ def exact_front(
         # What does not fit into a row may hide what does.
         within = [part.up_to(most) for part in parts]
         if not meter.message:
-            parts = search(most)
+            parts = searched(most)
             certified = _proven(parts)
             within = within + parts if meter.message else parts
         paths, F, X = _merged(problem, within, early=bool(meter.message))
@@ -184,7 +187,7 @@ def exact_front(
         # What was left out, or not searched, may be far from what was found.
         certified = None
     complete = not meter.message and (not allowance.name or certified == WHOLE)
-    near = "" if certified is None else f", {certified.said(allowance.name) if allowance.share else certified}"
+    near = _said(certified, allowance)
     if meter.message:
         message = f"ended early, {meter.message}; {counted(len(F), 'path')} found{short}{near}"
     elif not complete:
@@ -207,18 +210,25 @@ def exact_front(
     return ExactResult(X, F, complete, success, certified, message, meter.n_labels, meter.n_bytes, seconds=meter.elapsed)
 
 
-def _refuse(allowance: Allowance, what: str) -> None:
-    """Refuse to search for paths near the front where nothing would be proven."""
-    if allowance.name:
-        raise CapabilityError(f"{allowance.name} is not for {what}, of which no front is certified to be near; expected none")
+def _so_far(problem, parts: list[Part], most: int, meter: Meter, allowance: Allowance) -> ExactResult:
+    """Return what is known of a front while it is being searched for."""
+    within = [part.up_to(most) for part in parts]
+    certified = _proven(parts)
+    if problem.obstacles == "limit" or any(len(part.paths) > len(less.paths) for part, less in zip(parts, within, strict=True)):
+        certified = None
+    _, F, X = _merged(problem, within, early=True)
+    assert X is not None
+    message = f"{counted(len(F), 'path')} found{_said(certified, allowance)}"
+    return ExactResult(X, F, False, False, certified, message, meter.n_labels, meter.n_bytes, meter.elapsed)
 
 
-def _proven(parts: list[_Part]) -> Certificate | None:
+def _said(certified: Certificate | None, allowance: Allowance) -> str:
+    return "" if certified is None else f", {certified.said(allowance.name) if allowance.share else certified}"
+
+
+def _proven(parts: list[Part]) -> Certificate | None:
     """Return what is proven of all parts together: of each, as a part has no larger ranges than the whole."""
-    each = [part.certified for part in parts]
-    if None in each:
-        return None
-    return Certificate(*(max((getattr(one, name) for one in each), default=0.0) for name in ("epsilon", "share")))
+    return together([part.certified for part in parts])
 
 
 def _kinds(problem) -> tuple[list[int], list[int]]:
@@ -241,156 +251,7 @@ def _front_in_time(problem, budget: Budget | None) -> ExactResult:
     return ExactResult(X, found.F, found.complete, found.complete, certified, *rest)
 
 
-class _Part(NamedTuple):
-    """What a search found.
-
-    Attributes
-    ----------
-    paths : list of numpy.ndarray
-    F : numpy.ndarray, shape (N, k)
-        What the search says of the objectives that add up, or of the length if none does.
-    off : numpy.ndarray, shape (N, k)
-        By how much that may be off, where costs had to be rounded.
-    rounded : numpy.ndarray of bool, shape (k,)
-        Whether they had to be.
-    certified : Certificate or None
-        How near they are proven to come to the front of what was searched.
-    """
-
-    paths: list[np.ndarray]
-    F: np.ndarray
-    off: np.ndarray
-    rounded: np.ndarray
-    certified: Certificate | None
-
-    def up_to(self, most: int) -> _Part:
-        """Return what was found of paths that visit at most so many cells."""
-        keep = [k for k, path in enumerate(self.paths) if len(path) <= most]
-        return _Part([self.paths[k] for k in keep], self.F[keep], self.off[keep], self.rounded, None)
-
-
-def _search(
-    problem,
-    objectives: list[Objective],
-    moves: Moves,
-    usable: np.ndarray,
-    meter: Meter,
-    allowance: Allowance,
-    searched: set[bytes],
-    most: int | None = None,
-) -> list[_Part]:
-    """Return paths over usable cells, bool, shape (n_cells,), among which is the front of those that visit at most ``most``.
-
-    Where costs have to be rounded, the cheapest paths may lose most of theirs. These visit no cell that costs more than they
-    do: a search among the cells that are left has a finer unit, and so on. Sets of cells that were searched are not again.
-    """
-    costs = integer_costs(objectives, problem.grid, moves, usable)
-    _check_detours(problem, objectives, costs)
-    if costs.rounded.any():
-        name = objectives[int(np.flatnonzero(costs.rounded)[0])].name
-        _refuse(allowance, f"the objective {name!r}, whose costs have to be rounded")
-    start, goal = moves.index(problem.start), moves.index(problem.goal)
-    order = costs.order
-    if most is not None:
-        front = _front_of_short_paths(moves, costs.take(order), start, goal, most - 1, meter)
-    elif len(objectives) == 3:
-        front = front_of_three(moves, costs.take(order), start, goal, meter)
-    elif len(objectives) == 1 and not costs.with_heading:
-        front = front_of_one(moves, costs, start, goal, meter)
-    else:
-        # A single objective that depends on headings is searched as two equal ones.
-        front = front_of_two(moves, costs.take((order * 2)[:2]), start, goal, meter, allowance)
-    points = front.points[:, np.argsort(order)] + costs.field[:, start]
-    lengths = np.array([len(path) for path in front.paths]).reshape(-1, 1)
-    certified = None if costs.rounded.any() else front.certified
-    parts = [_Part(front.paths, costs.values(points), lengths * costs.unit * costs.off, costs.rounded, certified)]
-    finer = [_cheap_part(points[:, k], costs, k, moves, usable, start) for k in np.flatnonzero(costs.rounded).tolist()]
-    del costs, front
-    for part in finer:
-        if part is not None and not meter.message:
-            cheap, within = part
-            key = cheap.legal.tobytes() + within.tobytes()
-            if key not in searched:
-                searched.add(key)
-                parts += _search(problem, objectives, cheap, within, meter, allowance, searched, most)
-    return parts
-
-
-def _check_detours(problem, objectives: list[Objective], costs: Costs) -> None:
-    """Refuse costs by which a detour may be the better way, if the representation codes none."""
-    if problem.representation.codes_detours or np.array_equal(costs.direct, DIRECT):
-        return
-    k = next(k for k in range(len(objectives)) if not np.array_equal(costs.take([k]).direct, DIRECT))
-    raise CapabilityError(
-        f"by the objective {objectives[k].name!r} two steps may cost less than the one that leads to the same "
-        f"cell, and the {problem.representation.name} representation codes that one alone; "
-        f"expected the representation 'cells' for an exact front"
-    )
-
-
-def _front_of_short_paths(moves: Moves, costs: Costs, start: int, goal: int, most_steps: int, meter: Meter) -> Front:
-    """Return the front of the paths that take at most ``most_steps`` steps, or any such paths if a budget ends the search."""
-    n_obj = len(costs.step)
-    # Each objective alone is quick, so that there is something to keep if a budget ends the search for all.
-    paths: list[np.ndarray] = []
-    for objectives in [*([k] for k in range(n_obj)), range(n_obj)]:
-        if not meter.message:
-            found = front_of_three(moves, _three(costs.take(objectives)), start, goal, meter, most_steps).paths
-            paths = paths + found if len(objectives) < n_obj or meter.message else found
-    points = np.array([_costs_of(path, moves, costs) for path in paths], dtype=np.int64).reshape(-1, n_obj)
-    return Front(paths, points, None if meter.message else WHOLE)
-
-
-def _three(costs: Costs) -> Costs:
-    """Return one to three costs as three, with some that are nothing before the last, since turns come last."""
-    place = [len(costs.step) - 1] * (3 - len(costs.step))
-    return dataclasses.replace(
-        costs,
-        step=np.insert(costs.step, place, 0, axis=0),
-        field=np.insert(costs.field, place, 0, axis=0),
-        unit=np.insert(costs.unit, place, 1.0),
-        off=np.insert(costs.off, place, 0),
-        enter=None if costs.enter is None else np.insert(costs.enter, place, 0, axis=0),
-    )
-
-
-def _costs_of(path: np.ndarray, moves: Moves, costs: Costs) -> np.ndarray:
-    """Return the costs of a path, int64, shape (k,), without that of the start cell."""
-    dx, dy = np.diff(moves.cells(path), axis=0).T
-    heading = HEADING_OF[dy + 1, dx + 1]
-    before = np.concatenate([[8], heading[:-1]])
-    total = costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
-    return total if costs.enter is None else total + costs.enter[:, path[1:], heading].sum(axis=1)
-
-
-def _cheap_part(
-    points: np.ndarray, costs: Costs, k: int, moves: Moves, usable: np.ndarray, start: int
-) -> tuple[Moves, np.ndarray] | None:
-    """Return the moves and the usable cells that paths of low cost can take, or None if they have no finer unit.
-
-    There is none, either, if no path has a low cost.
-    """
-    # The rounding of each cell may have hidden a path that costs a little more.
-    dearest = points + costs.off[k] * np.count_nonzero(usable)
-    field = costs.field[k]
-    if costs.enter is not None:
-        into = np.where(moves.entered, field + costs.enter[k].T, UNREACHABLE)
-        # No cell can be visited for less, and the start is not entered.
-        field = np.where(np.arange(moves.n_cells) == start, field, into.min(axis=0))
-        usable = usable & (field < UNREACHABLE)
-    values = np.sort(field[usable])
-    left = np.cumsum(values)[np.searchsorted(values, dearest, side="right") - 1]
-    cheap = (points < _FINE) & (left <= _FINER * values.sum())
-    if not cheap.any():
-        return None
-    most = dearest[cheap].max()
-    within = usable & (field <= most)
-    if costs.enter is not None:
-        moves = moves.without(into > most)
-    return moves.within(within), within
-
-
-def _merged(problem, parts: list[_Part], early: bool) -> tuple[list[np.ndarray], np.ndarray, np.ndarray | None]:
+def _merged(problem, parts: list[Part], early: bool) -> tuple[list[np.ndarray], np.ndarray, np.ndarray | None]:
     """Return paths, objectives and genes of what is non-dominated and keeps a potential limit, by the first objective.
 
     There are no genes if one of the given paths was too long for a row.

@@ -8,6 +8,7 @@ none is left, an array is full, or the budget is to be looked at.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -93,7 +94,12 @@ class LabelSearch(ABC):
 
     def run(self, meter: Meter) -> None:
         """Search until no label is left or a budget is used up."""
-        status = PAUSED
+        for _ in self.steps(meter):
+            pass
+
+    def steps(self, meter: Meter) -> Iterator[int]:
+        """Search as `run` does, and yield now and then how many labels have been taken from the heap since the last time."""
+        status, before = PAUSED, 0
         while status != DONE:
             meter.check(self.n_labels, self.nbytes)
             if meter.message:
@@ -102,6 +108,9 @@ class LabelSearch(ABC):
             meter.note(self.n_labels, self.nbytes)
             if status in self.growing:
                 _grow(getattr(self, self.growing[status]))
+            popped = int(self.counts[N_POPPED])
+            yield popped - before
+            before = popped
 
     @property
     def n_labels(self) -> int:

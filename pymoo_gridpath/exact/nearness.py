@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
@@ -48,8 +49,17 @@ class Certificate:
     share: float
 
     def __str__(self):
+        return self.said(self._telling)
+
+    @property
+    def short(self) -> str:
+        """The same in few words: "1.23 %", or "3.4 % of range"."""
+        return _percent(getattr(self, self._telling)) + (" of range" if self._telling == "share" else "")
+
+    @property
+    def _telling(self) -> str:
         # A factor of two and more says little.
-        return self.said("epsilon" if self.epsilon <= 1.0 or self.epsilon <= self.share else "share")
+        return "epsilon" if self.epsilon <= 1.0 or self.epsilon <= self.share else "share"
 
     def said(self, name: str) -> str:
         """Return one of the two in words."""
@@ -60,6 +70,14 @@ class Certificate:
 
 #: Of the whole front.
 WHOLE = Certificate(0.0, 0.0)
+
+
+def together(certificates: Sequence[Certificate | None]) -> Certificate | None:
+    """Return what is certified of all of several, None if nothing is of one of them."""
+    if None in certificates:
+        return None
+    worst = (max((getattr(one, name) for one in certificates), default=0.0) for name in ("epsilon", "share"))
+    return Certificate(*worst)
 
 
 def _percent(share: float) -> str:

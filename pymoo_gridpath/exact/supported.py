@@ -11,7 +11,9 @@ import numpy as np
 from pymoo_gridpath.compiled import COMPILED, kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.nearness import Allowance, Certificate, Lines, certificate
+from pymoo_gridpath.exact.steps import Pace, Steps
 from pymoo_gridpath.neighbourhood import OPPOSITE
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.shortest import Backward
@@ -19,6 +21,9 @@ from pymoo_gridpath.search.shortest import Backward
 # Searches that are made side by side, whatever the machine, so that results are the same; in threads, which compiled kernels
 # let run, where a search takes long enough.
 _SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**16
+
+# Bytes of a state of the label search.
+_STATE = 40
 
 # Of smaller grids a part saves less than it takes to find.
 _CELLS_WORTH_A_PART = 2**10
@@ -76,9 +81,9 @@ class Hull(NamedTuple):
 
 
 def supported_points(
-    moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, allowance: Allowance
-) -> Hull:
-    """Return ends and hull of a front of two objectives by single-objective searches.
+    moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, allowance: Allowance, pace: Pace
+) -> Steps[Front, Hull]:
+    """Find ends and hull of a front of two objectives by single-objective searches, and hand over what is found on the way.
 
     Parameters
     ----------
@@ -93,6 +98,8 @@ def supported_points(
         suffice for the searches that they take: then there is no point.
     allowance : Allowance
         Nor are more minimised once the points are proven to come that near to the front.
+    pace : Pace
+        When to hand over the points that are known.
 
     References
     ----------
@@ -100,10 +107,10 @@ def supported_points(
     gap between two points).
     """
     if not COMPILED or moves.n_cells < _CELLS_WORTH_THREADS:
-        return _supported_points(moves, costs, start, goal, n_weights, meter, allowance, map)
+        return (yield from _supported_points(moves, costs, start, goal, n_weights, meter, allowance, pace, map))
     with ThreadPoolExecutor(_SIDE_BY_SIDE) as threads:
         try:
-            return _supported_points(moves, costs, start, goal, n_weights, meter, allowance, threads.map)
+            return (yield from _supported_points(moves, costs, start, goal, n_weights, meter, allowance, pace, threads.map))
         except BaseException as error:
             # Such as Ctrl-C: the searches under way have to end, too.
             meter.message = meter.message or f"ended by {type(error).__name__}"
@@ -111,13 +118,26 @@ def supported_points(
 
 
 def _supported_points(
-    moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, allowance: Allowance, map_
-) -> Hull:
+    moves: Moves, costs: Costs, start: int, goal: int, n_weights: int, meter: Meter, allowance: Allowance, pace: Pace, map_
+) -> Steps[Front, Hull]:
     whole = moves
     bounds, ends = _ends(moves, costs, start, goal, meter, map_)
     if meter.message:
         return Hull(moves, costs, start, goal, bounds, np.empty((0, 2), dtype=np.int64), [], *_no_weights(bounds))
     (left, first), (right, last) = ends
+    # Cells of the whole grid, and of the part of it that the searches to come are of.
+    found, used, sums_of = {left: first, right: last}, [], []
+
+    def so_far() -> Front:
+        points = non_dominated(np.array(list(found)))
+        paths = [found[point] for point in map(tuple, points.tolist())]
+        if moves is not whole:
+            paths = [whole.from_grid(moves.to_grid(path)) for path in paths]
+        return Front(paths, points, _certificate(found, used, sums_of, costs, start))
+
+    # Both ends took up to three searches of the whole.
+    if pace.due(3 * bounds.shape[1], len(found), len(first)):
+        yield so_far
     # Where costs depend on headings, which of equal paths is found hangs on all labels, those that lead nowhere too.
     most = (UNREACHABLE, UNREACHABLE) if costs.with_heading else (right[0], left[1])
     # First the cells from where the goal is no farther than for the front, then those that lie on ways no longer than for it.
@@ -137,17 +157,19 @@ def _supported_points(
         _, low, high, _ = gap
         return _minimise(moves, costs, _normal(low, high), start, goal, spent, (high[0], low[1]), meter)
 
-    first, last = (moves.from_grid(whole.to_grid(path)) for path in (first, last))
-    n_weights = _affordable(n_weights, bounds, costs, meter)
-    weighted = np.empty((bounds.shape[1], n_weights), dtype=np.float32)
+    found = {point: moves.from_grid(whole.to_grid(path)) for point, path in found.items()}
+    n_weights = _affordable(n_weights, bounds, costs, meter, allowance)
+    weighted = _Columns(bounds.shape[1], n_weights, at_once=not allowance.name)
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
-    found, used, sums_of = {left: first, right: last}, [], []
     # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
     gaps, narrow = [(0.0, left, right, 0)] if left != right else [], []
     while gaps and len(used) < n_weights:
         meter.check()
         if meter.message or (allowance.name and allowance.allows(_certificate(found, used, sums_of, costs, start))):
             break
+        # After the last two searches.
+        if used and pace.due(2 * bounds.shape[1], len(found), len(first)):
+            yield so_far
         widest = [heapq.heappop(gaps) for _ in range(min(_SIDE_BY_SIDE, len(gaps), n_weights - len(used)))]
         for gap, least in zip(widest, list(map_(minimise, widest)), strict=True):
             if least is None:
@@ -157,7 +179,7 @@ def _supported_points(
             _, low, high, _ = gap
             used.append(_normal(low, high))
             sums_of.append(total)
-            weighted[:, column] = _rounded_down(sums)
+            weighted.add(_rounded_down(sums))
             if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
                 found[point] = path
                 for a, b in ((low, point), (point, high)):
@@ -171,7 +193,12 @@ def _supported_points(
     if not used:
         return Hull(*given, *_no_weights(bounds))
     column = np.array([column for _, column in sorted(narrow)])
-    return Hull(*given, np.array(used)[column], weighted, column, Lines(np.array(used), np.array(sums_of, dtype=float)))
+    near = allowance.name and allowance.allows(_certificate(found, used, sums_of, costs, start))
+    if not near and not meter.message:
+        meter.check(n_bytes=weighted.n_bytes_more)
+    # Nothing is searched for otherwise, and no bound asked for.
+    rows = np.empty((0, len(used)), dtype=np.float32) if near or meter.message else weighted.rows()
+    return Hull(*given, np.array(used)[column], rows, column, Lines(np.array(used), np.array(sums_of, dtype=float)))
 
 
 def non_dominated(points: np.ndarray) -> np.ndarray:
@@ -218,6 +245,37 @@ def _around(near: np.ndarray, moves: Moves, costs: Costs, start: int, goal: int,
     return part, costs.within(moves, part), int(ends[0]), int(ends[1]), [moves.part_of(array, part) for array in arrays]
 
 
+class _Columns:
+    """Weighted sums as columns of an array, in which those of a state lie side by side.
+
+    Where the label search that needs them may not come, they are put there last.
+    """
+
+    def __init__(self, n_states: int, n_weights: int, at_once: bool):
+        self._rows = np.empty((n_states, n_weights), dtype=np.float32) if at_once else None
+        self._columns: list[np.ndarray] = []
+        self._n = 0
+
+    def add(self, sums: np.ndarray) -> None:
+        if self._rows is None:
+            self._columns.append(sums)
+        else:
+            self._rows[:, self._n] = sums
+            self._n += 1
+
+    @property
+    def n_bytes_more(self) -> int:
+        """Bytes that the array, and the states of the label search, take besides."""
+        return sum(column.nbytes for column in self._columns) + sum(len(column) * _STATE for column in self._columns[:1])
+
+    def rows(self) -> np.ndarray:
+        """Return the array, float32, shape (n_states, n_weights)."""
+        if self._rows is None:
+            self._rows = np.stack(self._columns, axis=1)
+            self._columns.clear()
+        return self._rows
+
+
 def _no_weights(bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Lines]:
     """Return weights, weighted sums, their columns, and lines when none was minimised."""
     lines = Lines(np.empty((0, 2)), np.empty(0))
@@ -229,13 +287,17 @@ def _rounded_down(sums: np.ndarray) -> np.ndarray:
     return np.nextafter(sums.astype(np.float32), np.float32(0))
 
 
-def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter) -> int:
-    """Return how many weighted sums there is memory for, and note what arrays of the size of the grid take."""
+def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter, allowance: Allowance) -> int:
+    """Return how many weighted sums there is memory for, and note what arrays of the size of the grid take.
+
+    Half of it is for labels, of which there may be none where something is allowed.
+    """
     n_states = bounds.shape[1]
     # Bounds, the searches under way with their costs, and the states of the label search.
-    base = n_states * (bounds.itemsize * 2 + (17 + 32) * _SIDE_BY_SIDE + 40)
+    base = n_states * (bounds.itemsize * 2 + (17 + 32) * _SIDE_BY_SIDE + (0 if allowance.name else _STATE))
     base += 0 if costs.enter is None else costs.enter.nbytes * (1 + _SIDE_BY_SIDE)
-    n_weights = max(0, min(n_weights, int((meter.memory / 2 - base) // (4 * n_states))))
+    share = 0.9 if allowance.name else 0.5
+    n_weights = max(0, min(n_weights, int((share * meter.memory - base) // (4 * n_states))))
     meter.n_fixed = base + 4 * n_states * max(n_weights, 1)
     return n_weights
 

@@ -27,6 +27,7 @@ from pymoo_gridpath.exact.labels import (
     load_of,
 )
 from pymoo_gridpath.exact.nearness import WHOLE
+from pymoo_gridpath.exact.steps import Pace, Steps, last
 from pymoo_gridpath.search import UNREACHABLE, Moves, backward_costs
 from pymoo_gridpath.search.heap import drop_first_of_four, push_four
 
@@ -59,10 +60,20 @@ def front_of_three(moves: Moves, costs: Costs, start: int, goal: int, meter: Met
     lazy and efficient dominance checks", IJCAI 2023 (LTMOA*). F.-J. Pulido, L. Mandow and J.-L. Perez-de-la-Cruz,
     "Dimensionality reduction in multiobjective shortest path search", Computers & Operations Research 64, 2015.
     """
-    search = _Search(moves, costs, start, goal, meter, most_steps)
+    return last(fronts_of_three(moves, costs, start, goal, meter, most_steps))
+
+
+def fronts_of_three(
+    moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, most_steps: int | None = None
+) -> Steps[Front, Front]:
+    """Search as `front_of_three` does, and hand over the larger and larger parts of the front that have been found."""
+    search, pace = _Search(moves, costs, start, goal, meter, most_steps), Pace()
     meter.n_fixed = search.n_fixed
-    if not meter.message:
-        search.run(meter)
+    about = int(moves.n_cells**0.5)
+    for popped in () if meter.message else search.steps(meter):
+        n_found = int(search.counts[N_FOUND])
+        if search.counts[N_OPEN] and n_found and not meter.message and pace.due(popped, n_found, about):
+            yield lambda: Front(search.paths(), search.points())
     if meter.message:
         return Front(search.paths(), search.points())
     return Front(search.smoothest_paths(meter), search.points(), WHOLE)

@@ -17,6 +17,7 @@ would add up along the path.
 from __future__ import annotations
 
 import dataclasses
+import functools
 
 import numpy as np
 
@@ -38,6 +39,7 @@ from pymoo_gridpath.exact.labels import (
     load_of,
 )
 from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, lowered
+from pymoo_gridpath.exact.steps import Pace, Steps, last
 from pymoo_gridpath.exact.supported import Hull, non_dominated, supported_points
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.heap import drop_first, push
@@ -63,10 +65,17 @@ _CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
 
 
 def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, allowance: Allowance | None = None) -> Front:
-    """Return the exact front of two objectives, or paths that are proven to come near to it.
+    """Return the exact front of two objectives, or paths that are proven to come near to it, see `fronts_of_two`."""
+    return last(fronts_of_two(moves, costs, start, goal, meter, allowance))
 
-    Of paths with the same costs it holds the one that `smoothest_paths` chooses, as long as memory lasts; any one if a cost
-    depends on headings.
+
+def fronts_of_two(
+    moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, allowance: Allowance | None = None
+) -> Steps[Front, Front]:
+    """Search for the exact front of two objectives, or paths that are proven to come near to it, and hand over better ones.
+
+    Of paths with the same costs the last holds the one that `smoothest_paths` chooses, as long as memory lasts; any one if a
+    cost depends on headings. Those before hold any, with what is proven of them.
 
     Parameters
     ----------
@@ -87,21 +96,35 @@ def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter
     """
     allowance = allowance or Allowance()
     n_weights = min(max(moves.n_cells // _CELLS_PER_WEIGHT, _LEAST_WEIGHTS), _MOST_WEIGHTS)
-    hull = supported_points(moves, costs, start, goal, n_weights, meter, allowance)
+    pace = Pace()
+    hull = yield from supported_points(moves, costs, start, goal, n_weights, meter, allowance, pace)
     known, found = hull.points, [Front(hull.paths, hull.points)]
     # What is proven takes time to work out, and matters where less than the front will do, or has to.
     proven = hull.certificate(known) if meter.message or allowance.name else None
+    goes_on = not meter.message and not allowance.allows(proven)
+    if goes_on and pace.due(2 * hull.bounds.shape[1], len(known), len(hull.paths[0])):
+        yield lambda: _on_the_whole(moves, hull, found[0], hull.certificate(hull.points))
     for tolerance in (*_tolerances(hull), 0.0):
         if meter.message or allowance.allows(proven):
             break
         search = _Search(hull, known, tolerance, allowance)
-        search.run(meter)
+        for popped in search.steps(meter):
+            n_paths = len(known) + int(search.counts[N_FOUND])
+            # After the last pass the front itself comes next.
+            on_the_way = tolerance > 0.0 or search.counts[N_OPEN] > 0
+            if on_the_way and not meter.message and pace.due(popped, n_paths, len(hull.paths[0])):
+                yield functools.partial(_so_far, moves, hull, found, search)
         found.append(Front(search.paths(), search.points()))
         known = non_dominated(np.concatenate([known, found[-1].points]))
         if tolerance == 0.0 or meter.message or allowance.name:
             proven = search.certificate(known)
     early = meter.message or allowance.name
     front = merged(found) if early else Front(search.smoothest_paths(meter), search.points())
+    return _on_the_whole(moves, hull, front, proven)
+
+
+def _on_the_whole(moves: Moves, hull: Hull, front: Front, proven: Certificate | None) -> Front:
+    """Return a front that was found on a part of the grid as one of the whole, with what is proven of it."""
     return Front([moves.from_grid(hull.moves.to_grid(path)) for path in front.paths], front.points, proven)
 
 
@@ -113,6 +136,12 @@ def _tolerances(hull: Hull) -> tuple[float, ...]:
     if few and not hull.costs.with_heading:
         return ()
     return _TOLERANCES_ON_LARGE if n_cells > _LARGE else _TOLERANCES
+
+
+def _so_far(moves: Moves, hull: Hull, found: list[Front], search: _Search) -> Front:
+    """Return what was found before a search, and by it, with what is proven while it is under way."""
+    front = merged([*found, Front(search.paths(), search.points())])
+    return _on_the_whole(moves, hull, front, search.certificate(front.points))
 
 
 def merged(fronts: list[Front]) -> Front:

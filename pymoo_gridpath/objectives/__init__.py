@@ -22,18 +22,25 @@ from pymoo_gridpath.objectives.base import (
 from pymoo_gridpath.objectives.clearance import LeastClearance
 from pymoo_gridpath.objectives.ground import Climb, GroundCost
 from pymoo_gridpath.objectives.risk import Inflation, Risk, Vulnerability
+from pymoo_gridpath.objectives.suites import Ascent, Delay, Exposure, IntegerLength, RandomCost, TravelTime
 
 __all__ = [
     "OBJECTIVES",
+    "Ascent",
     "Climb",
+    "Delay",
+    "Exposure",
     "GroundCost",
     "Inflation",
+    "IntegerLength",
     "LeastClearance",
     "Length",
     "MoveCosts",
     "Objective",
     "Prepared",
+    "RandomCost",
     "Risk",
+    "TravelTime",
     "Turn",
     "Vulnerability",
     "avoiding_costs",

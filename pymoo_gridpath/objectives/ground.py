@@ -101,7 +101,7 @@ class GroundCost(_OfRaster):
         costs = self._costs(check_grid(grid))
         if self.per == "entry":
             return None
-        return np.stack([(costs + _left(costs, dx, dy)) / 2.0 * LENGTHS[m] for m, (dx, dy) in enumerate(HEADINGS)])
+        return np.stack([(costs + left_values(costs, dx, dy)) / 2.0 * LENGTHS[m] for m, (dx, dy) in enumerate(HEADINGS)])
 
     def _costs(self, grid) -> np.ndarray:
         """Return what each cell costs, once it is known to be a cost; 0 in occupied cells without data."""
@@ -166,8 +166,7 @@ class Climb(_OfRaster):
                 f"{what} is {heights[y, x]:g} in the free cell ({x}, {y}), expected a finite number; mark cells that no path "
                 f"may enter as occupied"
             )
-        with np.errstate(invalid="ignore"):
-            return np.stack([np.maximum(heights - _left(heights, dx, dy), 0.0) for dx, dy in HEADINGS])
+        return climbed(heights)
 
 
 def _raster(what: str, given) -> np.ndarray:
@@ -186,7 +185,13 @@ def _names(name: str, label: str | None, default: str) -> tuple[str, str]:
     return name, default if label is None else checks.text("label", label)
 
 
-def _left(values: np.ndarray, dx: int, dy: int) -> np.ndarray:
+def climbed(heights: np.ndarray) -> np.ndarray:
+    """Return what each step rises, shape (8, height, width); NaN where it would come from beyond the edge."""
+    with np.errstate(invalid="ignore"):
+        return np.stack([np.maximum(heights - left_values(heights, dx, dy), 0.0) for dx, dy in HEADINGS])
+
+
+def left_values(values: np.ndarray, dx: int, dy: int) -> np.ndarray:
     """Return for each cell the value of the one that a step (dx, dy) to it leaves; NaN where that is beyond the edge."""
     height, width = values.shape
     left = np.full(values.shape, np.nan)

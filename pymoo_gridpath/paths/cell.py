@@ -37,6 +37,9 @@ class CellPaths(Paths):
     ([6.0], [180], [0])
     """
 
+    # The signs of the steps along x and y that are no steps back, of paths which may not take those; set by `_unchecked`.
+    _forward: tuple[int, int] | None = None
+
     def __init__(self, grid: OccupancyGrid, rows: np.ndarray):
         self.grid = check_grid(grid)
         n_cells = grid.width * grid.height
@@ -46,10 +49,13 @@ class CellPaths(Paths):
             raise GridPathError(f"rows is {checks.shown(self.rows)} with other values, expected {expected}")
 
     @classmethod
-    def _unchecked(cls, grid: OccupancyGrid, rows: np.ndarray) -> CellPaths:
-        """Return paths of cells that the package itself worked out, without the time to look at them again."""
+    def _unchecked(cls, grid: OccupancyGrid, rows: np.ndarray, forward: tuple[int, int] | None = None) -> CellPaths:
+        """Return paths of cells that the package itself worked out, without the time to look at them again.
+
+        Of paths that may not go back, ``forward`` holds the signs of the steps along x and y that they may take besides 0.
+        """
         paths = cls.__new__(cls)
-        paths.grid, paths.rows = grid, rows
+        paths.grid, paths.rows, paths._forward = grid, rows, forward
         return paths
 
     def __len__(self) -> int:
@@ -57,7 +63,7 @@ class CellPaths(Paths):
 
     def __getitem__(self, index) -> CellPaths:
         """Return the paths at a slice, a mask or an array of indices."""
-        return CellPaths._unchecked(self.grid, self.rows[check_chosen(index, len(self))])
+        return CellPaths._unchecked(self.grid, self.rows[check_chosen(index, len(self))], self._forward)
 
     @functools.cached_property
     def sequences(self) -> Sequences:
@@ -67,3 +73,12 @@ class CellPaths(Paths):
         offsets = np.zeros(len(self) + 1, dtype=np.int64)
         np.cumsum(np.count_nonzero(moved, axis=1), out=offsets[1:])
         return Sequences(self.rows[moved].astype(np.int64, copy=False), offsets)
+
+    @property
+    def interfering_cells(self) -> np.ndarray:
+        """As of `Paths`; where paths may not go back, each step that does counts as one more."""
+        count = super().interfering_cells
+        if self._forward is None:
+            return count
+        back = [(steps != 0) & (np.sign(steps) != sign) for steps, sign in zip(self._steps, self._forward, strict=True)]
+        return count + self._sum((back[0] | back[1]).astype(np.int64))

@@ -38,7 +38,8 @@ class Sequences(NamedTuple):
     @property
     def lengths(self) -> np.ndarray:
         """Number of cells of each path, int64, shape (N,)."""
-        return np.diff(self.offsets)
+        # `numpy.diff` takes several times as long for a few paths.
+        return self.offsets[1:] - self.offsets[:-1]
 
     def take(self, chosen: np.ndarray) -> Sequences:
         """Return some of the paths, by a bool for each, shape (N,), or by their numbers, in that order."""

@@ -1,9 +1,9 @@
-"""What every planner is that is no evolutionary search: a pymoo algorithm that plans once."""
+"""What every planner is that is no evolutionary search: a pymoo algorithm that plans once, or better and better."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.planners.display import PathOutput
+from pymoo_gridpath.planners.ending import UntilPlanned
 from pymoo_gridpath.planners.signature import parameters_of, refuse_unknown
 from pymoo_gridpath.problems.members import are_legal
 from pymoo_gridpath.registry import Registry, key_of
@@ -31,11 +32,14 @@ class Plan(NamedTuple):
         Whether the planner has done what it promises; it may be that there is no path to be found.
     message : str
         How the search went, a few words without an end mark, such as "all 2 points found".
+    final : bool
+        Whether no better one follows, see `Planner.plans`.
     """
 
     paths: Sequences | np.ndarray
     success: bool = True
     message: str = ""
+    final: bool = True
 
 
 class Planner(Algorithm, ABC):
@@ -43,9 +47,10 @@ class Planner(Algorithm, ABC):
 
     A planner of one's own has a method `plan`, and arguments of its constructor that are keywords, of which it hands on those
     that it does not know. All else is here: it is called once, its paths are checked, coded, and evaluated by the problem like
-    those of any other algorithm, and the Result says how it went, ``result.success`` and ``result.message``. Seeds count where
-    it draws from ``self.random_state``, terminations do not. One that is registered, see `pymoo_gridpath.registry.register`, is
-    known by its name to `make_algorithm`, studies and the command line.
+    those of any other algorithm, and the Result says how it went, ``result.success`` and ``result.message``. One that finds
+    better and better paths may hand them over on the way, by `plans`. Seeds count where it draws from ``self.random_state``,
+    terminations do not, but for ``algorithm.termination.terminate()`` between two plans. One that is registered, see
+    `pymoo_gridpath.registry.register`, is known by its name to `make_algorithm`, studies and the command line.
 
     Parameters
     ----------
@@ -118,6 +123,8 @@ class Planner(Algorithm, ABC):
         refuse_unknown(type(self).__name__, kwargs, self.parameters())
         # It finds its paths at once: there is no way to show.
         super().__init__(output=kwargs.pop("output", PathOutput(distance=False)), **kwargs)
+        # The plans to come, while it is at work.
+        self._plans: Iterator[Plan] | None = None
 
     @classmethod
     def parameters(cls) -> dict[str, Any]:
@@ -160,14 +167,37 @@ class Planner(Algorithm, ABC):
             Legal paths: from the start to the goal, by legal steps and, with ``obstacles="limit"``, within the potential limit.
         """
 
+    def plans(self, problem) -> Iterator[Plan]:
+        """Yield plans for a problem, better and better ones, the last of which is ``final``: by default the one of `plan`.
+
+        Each is an iteration of the run. A copy, or what was pickled, on the way begins anew when it goes on.
+        """
+        yield self.plan(problem)
+
+    def _setup(self, problem, **kwargs):
+        self.termination = UntilPlanned(self.termination)
+
+    def __getstate__(self):
+        # A search under way cannot be copied.
+        return self.__dict__ | {"_plans": None}
+
     def _initialize_infill(self):
-        representation = representation_of(self.problem)
         self.refuse(self.problem)
-        plan = self.plan(self.problem)
+        return self._infill()
+
+    def _infill(self):
+        representation = representation_of(self.problem)
+        if self._plans is None:
+            self._plans = self.plans(self.problem)
+        plan = next(self._plans, None)
         if not isinstance(plan, Plan):
+            # As it does, too, where the last was not final.
             raise GridPathError(f"the planner {self._name} returned {checks.shown(plan)}, expected a Plan")
         self.success = checks.flag(f"the success of the planner {self._name}", plan.success)
         self.message = checks.text(f"the message of the planner {self._name}", plan.message)
+        if checks.flag(f"whether the plan of the planner {self._name} is final", plan.final):
+            self.termination.terminate()
+            self._plans = None
         X = plan.paths
         if isinstance(X, Sequences):
             try:
@@ -179,8 +209,11 @@ class Planner(Algorithm, ABC):
         return Population.new("X", X)
 
     def _initialize_advance(self, infills=None, **kwargs):
+        self._advance(infills)
+
+    def _advance(self, infills=None, **kwargs):
         self._refuse_illegal(infills)
-        self.termination.terminate()
+        self.pop = infills
 
     def _refuse_illegal(self, pop) -> None:
         if not len(pop):

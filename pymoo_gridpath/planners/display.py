@@ -76,3 +76,30 @@ class PathOutput(Output):
         if front is not self._front:
             self._front, self._measure = front, None if front is None or not len(front) else ReferenceFront(front)
         return self._measure
+
+
+class FrontOutput(Output):
+    """A line for each front that `ExactFront` hands over: its points, and how near to the exact one it is proven to be.
+
+    The columns:
+
+    - ``n_gen``, ``n_eval``: fronts and evaluations so far.
+    - ``points``: paths of the front.
+    - ``certified``: how near it is proven to come to the exact one, see `Certificate`; a dash where nothing is proven.
+    - ``labels``: the most labels that the search has had at a time.
+    - ``seconds``: of the search so far.
+    """
+
+    def __init__(self):
+        super().__init__()
+        self.points, self.certified = Column("points", width=6), Column("certified", width=14)
+        self.labels, self.seconds = Column("labels", width=11), Column("seconds", width=8)
+        self.columns += [self.points, self.certified, self.labels, self.seconds]
+
+    def update(self, algorithm: Any) -> None:
+        super().update(algorithm)
+        found = algorithm.found
+        self.points.set(len(found.F))
+        self.certified.set(None if found.certified is None else found.certified.short)
+        self.labels.set(f"{found.n_labels:,}")
+        self.seconds.set(f"{found.seconds:.2f}")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -35,6 +36,7 @@ class QuadrantPaths:
     ----------
     raw : list of numpy.ndarray, each of shape (n, 2)
         Cells (x, y) of the alternatives before they are smoothed, the quickest first; as many as ``max_paths``, if there are.
+        They are worked out when they are asked for.
     seconds : numpy.ndarray, shape (len(raw),)
         Travel time of each of them.
     waypoints : list of Waypoints
@@ -48,13 +50,21 @@ class QuadrantPaths:
         ``n_cells`` of a `CountedPath`, which counts no occupied ones.
     """
 
-    raw: list[np.ndarray]
     seconds: np.ndarray
     waypoints: list[Waypoints]
     n_alternatives: int
     probes: int
     cells: int
     free_cells: int
+    _moves: Moves = field(repr=False)
+    _paths: list[np.ndarray] = field(repr=False)
+
+    @cached_property
+    def raw(self) -> list[np.ndarray]:
+        if not self._paths:
+            return []
+        ends = np.cumsum([len(path) for path in self._paths])
+        return np.split(self._moves.cells(np.concatenate(self._paths)), ends[:-1])
 
 
 @register
@@ -160,13 +170,14 @@ class QuadrantSelection(Planner):
         raw, seconds = self._listed(found, order, moves, grid.resolution or 1.0)
         chosen = self._chosen(raw, moves)
         self.found = QuadrantPaths(
-            _split(moves, raw),
             seconds,
             [Waypoints(grid, moves.cells(waypoints)) for waypoints, _ in chosen],
             _count(found.to, order),
             found.n_probes,
             found.n_cells,
             found.n_free,
+            moves,
+            raw,
         )
         paths = [path for _, path in chosen]
         cells = np.concatenate(paths) if paths else np.empty(0, dtype=np.int64)
@@ -180,8 +191,9 @@ class QuadrantSelection(Planner):
         ways, _, then = quickest(found.to, *measures, order, self.max_paths, per_cell, per_turn)
         cells, offsets = unfold(found.cells, found.ends, found.to, ways, then, moves.n_cells)
         counts, _, _ = measure(moves.legal, moves.offsets, cells, offsets)
-        costs = [cost_of(straight, diagonal, turn, per_cell, per_turn) for straight, diagonal, turn in counts]
-        by_time = sorted(range(len(costs)), key=lambda k: costs[k])
+        # Lists, as numbers of numpy are costly one by one.
+        costs = [cost_of(straight, diagonal, turn, per_cell, per_turn) for straight, diagonal, turn in counts.tolist()]
+        by_time = sorted(range(len(costs)), key=costs.__getitem__)
         seconds = np.array([costs[k][1] * per_cell + costs[k][2] * per_turn for k in by_time])
         return [cells[offsets[k] : offsets[k + 1]] for k in by_time], seconds
 
@@ -203,13 +215,6 @@ class QuadrantSelection(Planner):
             return f"found {_counted_paths(self.found.n_alternatives)}, which branch in {places}"
         stuck = np.count_nonzero((found.to[1::2] == NOWHERE) & (found.to[2::2] == NOWHERE))
         return f"found no path: in {stuck} of {places} where it met an obstacle, both steps beside the blocked one are illegal"
-
-
-def _split(moves: Moves, paths: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the cells (x, y) of paths that are given by indices."""
-    if not paths:
-        return []
-    return np.split(moves.cells(np.concatenate(paths)), np.cumsum([len(path) for path in paths])[:-1])
 
 
 def _counted_paths(n: int) -> str:

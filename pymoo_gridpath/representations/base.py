@@ -61,6 +61,9 @@ class Representation(ABC):
     wants_fields : bool
         Whether its constructor takes ``fields``, the costs of cells that paths are to be scored by, and ``spare``, by what
         factor paths worth coding may be longer than the cheapest, see `make_representation`.
+    backtracking : bool
+        Whether steps of its paths may lead away from the goal along x or y; if not, each that does counts as an interfering
+        cell.
     timed : bool
         Whether its paths are paths in time, a cell a tick, as those of `TimedPaths`.
 
@@ -109,6 +112,7 @@ class Representation(ABC):
     monotone: bool = False
     codes_detours: bool = True
     wants_fields: bool = False
+    backtracking: bool = True
     timed: bool = False
 
     def __init__(self, grid: OccupancyGrid, start: Sequence[int], goal: Sequence[int]):

@@ -10,14 +10,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.errors import GridPathError, UnreachableError
 from pymoo_gridpath.fields import BoxedField, check_costs, obstacle_potential
 from pymoo_gridpath.grid import Box, OccupancyGrid
+from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths import CellPaths, Paths
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import Representation, check_ends
+from pymoo_gridpath.search import UNREACHABLE
 from pymoo_gridpath.search.lengths import cells_of_shortest, cheapest_length
+from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.sequences import cut_loops, mend
+from pymoo_gridpath.search.terrain import steps_through
 
 # Of up to so many fields sums are looked at for the default length of a row: as many as an exact front has objectives.
 _MOST_TOGETHER = 3
@@ -55,6 +59,10 @@ class CellSequence(Representation):
     spare : float, default 1
         Factor on the default of ``max_cells``, 1 or more. Paths that turn little, and compromises between several fields, may
         be longer than the cheapest ones; `make_representation` passes 2 for problems with such objectives.
+    backtracking : bool, default True
+        Whether steps may lead away from the goal along x or y. If not, they lead towards it along one of these or both, a row
+        has room for all such paths by default, and what goes back is no legal path: each step back is measured as an
+        interfering cell.
 
     Raises
     ------
@@ -62,7 +70,7 @@ class CellSequence(Representation):
         If start or goal is no free cell, both are the same, or no path joins them.
     GridPathError
         If max_cells is no whole number, too small for a shortest path or over 16 million, a field has another shape or negative
-        costs, or spare is less than 1.
+        costs, spare is less than 1, or backtracking is neither True nor False.
 
     Attributes
     ----------
@@ -91,8 +99,10 @@ class CellSequence(Representation):
         max_cells: int | None = None,
         fields=(),
         spare: float = 1.0,
+        backtracking: bool = True,
     ):
         super().__init__(grid, start, goal)
+        self.backtracking = checks.flag("backtracking", backtracking)
         spare = checks.number("spare", spare, 1.0, expected="a factor of 1 or more")
         self.max_cells = _room(self, max_cells, fields, spare)
         self.n_var = self.max_cells
@@ -100,6 +110,22 @@ class CellSequence(Representation):
         self.xu = np.full(self.n_var, grid.occupied.size - 1)
         self.xl[0] = self.xu[0] = self.start[1] * grid.width + self.start[0]
         self.xl[-1] = self.xu[-1] = self.goal[1] * grid.width + self.goal[0]
+
+    @functools.cached_property
+    def moves(self) -> Moves:
+        """The legal steps: along all eight headings, or along those that do not go back."""
+        if self._forward is None:
+            return Moves(self.grid, box=self.box)
+        towards = [(HEADINGS[:, k] == 0) | (HEADINGS[:, k] == self._forward[k]) for k in range(2)]
+        return Moves(self.grid, np.flatnonzero(towards[0] & towards[1]).tolist(), self.box)
+
+    @property
+    def _forward(self) -> tuple[int, int] | None:
+        """The signs of steps along x and y towards the goal, where none may go back."""
+        if self.backtracking:
+            return None
+        dx, dy = np.sign(np.subtract(self.goal, self.start)).tolist()
+        return dx, dy
 
     def decode(self, X: np.ndarray) -> CellPaths:
         """Return the paths that the rows of X code.
@@ -114,7 +140,7 @@ class CellSequence(Representation):
         CellPaths
             N paths from the start to the goal, legal or not.
         """
-        return CellPaths._unchecked(self.grid, self.genes(X))
+        return CellPaths._unchecked(self.grid, self.genes(X), self._forward)
 
     def encode(self, paths: Paths) -> np.ndarray:
         """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""
@@ -194,7 +220,18 @@ def _room(coding: CellSequence, max_cells: int | None, fields, spare: float) -> 
     """Return ``max_cells``, checked, or its default."""
     grid, box = coding.grid, coding.box
     start, goal = coding.moves.index(coding.start), coding.moves.index(coding.goal)
-    least = cells_of_shortest(coding.moves, start, goal)
+    if coding.backtracking:
+        least = cells_of_shortest(coding.moves, start, goal)
+    else:
+        least = 1 + int(steps_through(coding.moves, start, goal)[start])
+        if least > UNREACHABLE:
+            raise UnreachableError(
+                f"every path from {coding.start} to {coding.goal} on the grid {checks.shown(grid.name)} goes back along x or "
+                f"y, expected a query that can be solved without, or backtracking=True"
+            )
+        if max_cells is None:
+            # Straight steps alone.
+            return 1 + sum(abs(goal - start) for start, goal in zip(coding.start, coding.goal, strict=True))
     if max_cells is None:
         regions = grid.regions[box.slices]
         reachable = np.count_nonzero(regions == regions.flat[start])

@@ -116,11 +116,15 @@ class Moves:
     def within(self, usable: np.ndarray) -> Moves:
         """Return the steps that lead from and to usable cells, bool, shape (n_cells,)."""
         kept = copy.copy(self)
-        kept.legal = np.zeros_like(self.legal)
-        for m in range(8):
-            # What a roll brings round from the other end is beyond the edge, where no step leads.
-            kept.legal |= self.legal & (np.roll(usable, -self.offsets[m]) * np.uint8(1 << m))
-        kept.legal *= usable
+        one, leads = np.ascontiguousarray(usable).view(np.uint8), np.zeros_like(self.legal)
+        for m, offset in enumerate(self.offsets.tolist()):
+            # Rows run into one another, but no step leads beyond the edge.
+            later, earlier = slice(abs(offset), None), slice(max(0, len(one) - abs(offset)))
+            at, to = (earlier, later) if offset > 0 else (later, earlier)
+            leads[at] |= one[to] * np.uint8(1 << m)
+        leads &= self.legal
+        leads *= one
+        kept.legal = leads
         return kept
 
     def without(self, steps: np.ndarray) -> Moves:

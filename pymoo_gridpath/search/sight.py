@@ -75,7 +75,9 @@ _NO_PROMISE = Promise(_NO_ROWS, _NO_ROWS, _NO_CELLS, _NO_CELLS, _NO_CELLS, np.in
 
 def path_length(moves: Moves, path: np.ndarray) -> float:
     """Return the Euclidean length, in cells, of the line from each cell to the next, given by their indices."""
-    return float(np.hypot(*np.diff(moves.cells(path), axis=0).T).sum())
+    y = path // moves.width
+    x = path - y * moves.width
+    return float(np.hypot(x[1:] - x[:-1], y[1:] - y[:-1]).sum())
 
 
 def visible(moves: Moves, cells: np.ndarray, others: np.ndarray) -> np.ndarray:

@@ -166,7 +166,7 @@ class RepresentationSuite:
             assert paths.n_diagonal[i] == sum(short) and paths.n_straight[i] == sum(long) - sum(short)
             assert paths.length[i] == pytest.approx(reference.octile_length(cells), abs=1e-9)
             assert paths.turn[i] == reference.sign_turn(cells)
-            assert paths.interfering_cells[i] == reference.broken_cells(cells, grid)
+            assert paths.interfering_cells[i] == reference.broken_cells(cells, grid) + _forbidden_steps(cells, coding)
             assert total[i] == reference.total(cells, field)
         for chosen in (slice(1, None, 2), np.arange(len(X)) % 3 == 0, np.array([2, 0, 2, -1])):
             part = paths[chosen]
@@ -321,6 +321,15 @@ def random_rows(coding: Representation) -> np.ndarray:
     if coding.vtype is float:
         return rng.uniform(coding.xl, coding.xu, (_ROWS, coding.n_var))
     return rng.integers(coding.xl, coding.xu, (_ROWS, coding.n_var), endpoint=True).astype(coding.vtype)
+
+
+def _forbidden_steps(cells: list[Cell], coding: Representation) -> int:
+    """Return how many steps lead away from the goal along x or y, where none may."""
+    if coding.backtracking:
+        return 0
+    (x, y), (goal_x, goal_y) = coding.start, coding.goal
+    ahead = {(dx, dy) for dx in (0, np.sign(goal_x - x)) for dy in (0, np.sign(goal_y - y))}
+    return sum((np.sign(b[0] - a[0]), np.sign(b[1] - a[1])) not in ahead for a, b in itertools.pairwise(cells))
 
 
 def _cells(paths: Paths, index: int) -> list[tuple[int, int]]:

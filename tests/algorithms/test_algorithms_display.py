@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-import re
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from pymoo.util.display.output import Output
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
 from pymoo_gridpath.algorithms import CAPABILITIES, ExactFront, PathOutput, ahmed_deb_2013, make_algorithm
 from pymoo_gridpath.objectives import Objective
+from pymoo_gridpath.planners.display import FrontOutput
 from pymoo_gridpath.problems import random_dense_grid
 
 
@@ -121,10 +121,12 @@ def test_the_exact_front_prints_no_distance_and_is_not_computed_again(monkeypatc
     monkeypatch.setattr(problem, "pareto_front", None)
     result = minimize(problem, ExactFront(), verbose=True)
     (line,) = rows(capsys.readouterr().out)
-    expected = {"n_gen": "1", "n_eval": str(len(result.F)), "legal": str(len(result.F)), "length": f"{result.F[0, 0]:.3f}"}
-    assert line == expected
+    found = result.algorithm.found
+    expected = {"n_gen": "1", "n_eval": str(len(result.F)), "points": str(len(result.F)), "certified": "0 %"}
+    assert line == expected | {"labels": f"{found.n_labels:,}", "seconds": f"{found.seconds:.2f}"}
     early = minimize(problem, ExactFront(max_seconds=0.0), verbose=True)
-    assert re.search(r"\|\s+0 \|\s+-$", capsys.readouterr().out, re.MULTILINE) or len(early.pop)
+    (line,) = rows(capsys.readouterr().out)
+    assert (line["points"], line["certified"]) == ("0", "-") or len(early.pop)
 
 
 def test_the_papers_planner_shows_it_too():
@@ -137,4 +139,5 @@ def test_a_display_of_ones_own_is_kept_and_none_is_shared(name, make_problem):
     problem, own = make_problem(), Output()
     assert make_algorithm(name, problem, output=own).output is own
     first, second = (make_algorithm(name, problem).output for _ in range(2))
-    assert isinstance(first, PathOutput) and first is not second and first.columns is not second.columns
+    assert isinstance(first, FrontOutput if name == "exact" else PathOutput)
+    assert first is not second and first.columns is not second.columns

@@ -160,3 +160,39 @@ def test_a_planner_leaves_no_population(first, tmp_path):
     what = ["plan", tmp_path / "room.txt", "--start", "0,0", "--goal", "4,3", "--algorithm", "exact", "-o", tmp_path / "out"]
     assert run(*what)[0] == 0
     assert not (tmp_path / "out" / "population.npz").exists()
+
+
+@pytest.fixture(scope="module")
+def muddy(tmp_path_factory):
+    """A short run on ground that costs something."""
+    folder = tmp_path_factory.mktemp("muddy")
+    (folder / "room.txt").write_text("......\n..##..\n......\n......\n")
+    np.save(folder / "mud.npy", np.arange(24.0).reshape(4, 6))
+    np.save(folder / "hills.npy", np.arange(24.0).reshape(4, 6) % 5)
+    ground = ["--cost", f"{folder / 'mud.npy'}:2", "--climb", folder / "hills.npy"]
+    what = ["--start", "0,0", "--goal", "5,3", "--pop-size", "12", "--generations", "2", *ground]
+    status, _, err = run("plan", folder / "room.txt", *what, "-o", folder / "out")
+    assert status == 0, err
+    for name in ("mud.npy", "hills.npy"):
+        (folder / name).unlink()
+    return folder / "out"
+
+
+def test_it_knows_what_the_ground_costs(muddy, tmp_path):
+    """Its files may be gone."""
+    for k, where in enumerate([muddy, tmp_path / "0"]):
+        status, _, err = run("plan", "--resume", where, "--generations", "1", "--seed", 3, "-o", tmp_path / str(k))
+        assert status == 0, err
+    stored, found = (load_json(folder / "paths.json") for folder in (muddy, tmp_path / "1"))
+    np.testing.assert_array_equal(stored.F, found.F)
+    assert found.problem.objective_names == ["length", "vulnerability", "ground", "climb"] == stored.problem.objective_names
+
+
+def test_costs_that_do_not_fit_are_refused(muddy, tmp_path):
+    shutil.copytree(muddy, tmp_path / "out")
+    with np.load(muddy / "population.npz") as found:
+        arrays = dict(found)
+    arrays["ground.cost"] = arrays["ground.cost"] + 1.0
+    np.savez(tmp_path / "out" / "population.npz", **arrays)
+    status, _, err = run("plan", "--resume", tmp_path / "out", "-o", tmp_path / "on")
+    assert status == 2 and "what the ground costs does not fit paths.json" in err and err.count("\n") == 1

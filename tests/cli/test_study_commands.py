@@ -79,13 +79,16 @@ def test_starter_is_sound_and_all_of_its_comments_are(tmp_path):
     keys = re.findall(r"^# (\w+ = .*)$", text, re.MULTILINE)
     assert len(keys) >= 8
     for line in keys:
-        if not line.startswith(("scen", "queries", "algorithm = ")):
+        if not line.startswith(("scen", "queries", "algorithm = ", "suite", 'objectives = ["length", "ascent"]')):
             with_it = text.replace(f"# {line}", _without_alternative(text, line), 1)
             if line.startswith("moving"):
                 paper = with_it.index('[[algorithms]]\nname = "paper"')
                 with_it = with_it[:paper] + with_it[with_it.index("[[algorithms]]", paper + 1) :]
             (tmp_path / "one.toml").write_text(with_it)
             plan_study(load_study(tmp_path / "one.toml"))
+    suite = re.sub(r"# (\[\[problems\]\]\n)# (suite = .*\n)# (objectives)", r"\1\2\3", text)
+    (tmp_path / "one.toml").write_text(suite)
+    assert plan_study(load_study(tmp_path / "one.toml")).problems[-1].label.startswith("ASLETISMAC")
     exact = text.replace("# [[algorithms]]\n# algorithm", "[[algorithms]]\nalgorithm")
     assert exact != text
     (tmp_path / "one.toml").write_text(exact)

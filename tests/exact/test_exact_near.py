@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from exact_fronts import Cost, front_of, queries_of, random_grid
+from exact_fronts import Cost, front_of, holds, queries_of, random_grid, whole_costs
 from pymoo.optimize import minimize
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid
@@ -17,23 +17,6 @@ from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Lines, certificate, 
 from pymoo_gridpath.representations import CellSequence
 
 ASKED = [{name: value} for name in ("epsilon", "share") for value in (0.001, 0.05, 0.4, 1.0)]
-
-
-def holds(certified: Certificate, F, front) -> bool:
-    """Whether a certificate is true of points with whole numbers, by its definition."""
-    F, front = ([[int(value) for value in row] for row in np.asarray(rows)] for rows in (F, front))
-    factor, share = 1 + Fraction(min(certified.epsilon, 1e30)), Fraction(certified.share)
-    ranges = [max(column) - min(column) for column in zip(*front, strict=True)]
-    return all(
-        any(all(a <= factor * b for a, b in zip(p, q, strict=True)) for p in F)
-        and any(all(a <= b + share * extent for a, b, extent in zip(p, q, ranges, strict=True)) for p in F)
-        for q in front
-    )
-
-
-def whole_costs(shape, seed, names="ab"):
-    draw = np.random.default_rng(seed)
-    return {name: draw.integers(0, int(draw.choice([2, 6, 1000])), shape) for name in names}
 
 
 def test_certificates_are_true_of_all_paths():
@@ -163,6 +146,20 @@ def test_what_cannot_be_certified_is_refused_and_has_no_certificate(problem, wha
             exact_front(problem, **{name: 0.1})
     cut = exact_front(problem, Budget(max_labels=3))
     assert cut.certified is None and "within" not in cut.message
+
+
+def test_grids_are_refused_by_the_cells_that_paths_may_visit(monkeypatch):
+    grid = random_grid(8, 1)
+    problem = GridPathProblem(grid, (0, 0), (7, 7), "cells")
+    front = exact_front(problem).F
+    n_cells = np.count_nonzero(problem.representation.moves.legal)
+    assert n_cells < 64
+    for most in (n_cells, n_cells - 1):
+        monkeypatch.setattr("pymoo_gridpath.exact.front._MOST_CELLS", most)
+        if most == n_cells:
+            np.testing.assert_array_equal(exact_front(problem).F, front)
+    with pytest.raises(CapabilityError, match=f"paths may visit {n_cells} cells, expected at most {n_cells - 1} for an exact"):
+        exact_front(problem)
 
 
 @pytest.mark.parametrize("value", [0, -0.1, 1.5, np.nan, "2%", True])

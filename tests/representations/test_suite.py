@@ -1,5 +1,6 @@
 """The suite for representations: all codings pass it, one with two methods of its own too, and faults do not."""
 
+import functools
 import inspect
 import itertools
 
@@ -75,6 +76,7 @@ class RealHeadings(Headings):
         MixedRepresentation,
         AbsoluteRepresentation,
         CellSequence,
+        pytest.param(functools.partial(CellSequence, backtracking=False), id="CellSequence without backtracking"),
         Headings,
         RealHeadings,
     ],

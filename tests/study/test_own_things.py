@@ -191,6 +191,26 @@ print(from_bytes(execute(pickle.loads({pickle.dumps(plan.task(plan.runs[0]))!r})
     assert "with which the study was planned" in out.strip().splitlines()[-1]
 
 
+def test_code_that_is_installed_goes_by_its_version_and_other_code_by_what_it_says(hikers, tmp_path):
+    said = code_of(hikers.Hilly)
+    assert said.startswith("sha256 ")
+    # A source folder with what its build has left, as one that is installed for development.
+    left = tmp_path / "hikers.egg-info"
+    left.mkdir()
+    (left / "PKG-INFO").write_text("Metadata-Version: 2.1\nName: hikers\nVersion: 1.0\n")
+    (left / "top_level.txt").write_text("hikers\n")
+    (left / "SOURCES.txt").write_text("hikers.py\n")
+    code_of.cache_clear()
+    assert code_of(hikers.Hilly) == said
+    installed = tmp_path / "hikers-2.0.dist-info"
+    installed.mkdir()
+    (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: hikers\nVersion: 2.0\n")
+    (installed / "RECORD").write_text("hikers.py,,\n")
+    code_of.cache_clear()
+    assert code_of(hikers.Hilly) == "hikers 2.0"
+    code_of.cache_clear()
+
+
 def test_arguments_are_part_of_the_key(hikers):
     keys = {
         planned(problem={"objectives": ["length", {"class": "hikers:Hilly", "slope": slope}]}).runs[0].key
@@ -241,7 +261,7 @@ def test_an_operator_by_its_name_is_the_same_as_by_its_path(hikers, shuffle, tmp
     _, algorithm = built(third)
     assert type(algorithm.mating.crossover) is hikers.Sbx and number(algorithm.mating.crossover.eta) == 3
     # In processes that have the module, and nothing registered.
-    with LocalProcesses(2) as executor:
+    with LocalProcesses(1) as executor:
         outcome = run_study(third, tmp_path / "out", executor)
     assert (outcome.n_run, outcome.n_failed) == (1, 0)
 
@@ -375,7 +395,7 @@ def study_of(algorithm):
 def test_an_algorithm_that_is_made_already_runs_in_other_processes(hikers, tmp_path):
     make = made_algorithms(hikers)["with arguments"]
     plan = planned({"algorithm": make(), "pop_size": None})
-    with LocalProcesses(2) as executor:
+    with LocalProcesses(1) as executor:
         outcome = run_study(plan, tmp_path / "out", executor)
     assert (outcome.n_run, outcome.n_failed) == (1, 0)
     stored = Store(tmp_path / "out").read_plan()
@@ -466,7 +486,8 @@ def test_a_plan_that_was_changed_makes_nobody_import(hikers, tmp_path, place, va
 
 def test_runs_are_known_by_what_a_file_of_costs_holds(tmp_path):
     np.save(tmp_path / "mud.npy", np.ones((8, 8)))
-    mud = {"class": "ground", "cost": str(tmp_path / "mud.npy"), "weight": 2.0}
+    # As maps are, it is looked for beside the file of the study.
+    mud = {"class": "ground", "cost": "mud.npy", "weight": 2.0}
     setup = {
         "problems": [{"random": {"size": 8, "p0": 0.1}, "representation": "cells", "objectives": ["length", mud]}],
         "algorithms": [{"algorithm": "NSGA2", "pop_size": 10}],
@@ -474,13 +495,17 @@ def test_runs_are_known_by_what_a_file_of_costs_holds(tmp_path):
         "budget": {"generations": 2},
         "reference": False,
     }
-    plan = plan_study(Study.from_dict(setup))
+    plan = plan_study(Study.from_dict(setup, folder=tmp_path))
     store = Store(tmp_path / "store")
     assert run_study(plan, store.folder).n_failed == 0
-    again = plan_study(Study.from_dict(setup))
+    again = plan_study(Study.from_dict(setup, folder=tmp_path))
     assert [run.key for run in again.runs] == [run.key for run in plan.runs]
+    (tmp_path / "moved").mkdir()
+    np.save(tmp_path / "moved" / "mud.npy", np.ones((8, 8)))
+    moved = plan_study(Study.from_dict(setup, folder=tmp_path / "moved"))
+    assert [run.key for run in moved.runs] == [run.key for run in plan.runs]
     np.save(tmp_path / "mud.npy", np.eye(8))
-    other = plan_study(Study.from_dict(setup))
+    other = plan_study(Study.from_dict(setup, folder=tmp_path))
     assert {run.key for run in other.runs}.isdisjoint(run.key for run in plan.runs)
     # A plan that was made before does not run on other costs under its own keys, in a process that has not read those.
     build._problems.clear()
@@ -488,4 +513,4 @@ def test_runs_are_known_by_what_a_file_of_costs_holds(tmp_path):
     assert outcome.n_failed == 1 and "mud.npy is not what the study was planned with" in outcome.messages[0]
     (tmp_path / "mud.npy").unlink()
     with pytest.raises(GridPathError, match=r"mud\.npy"):
-        plan_study(Study.from_dict(setup))
+        plan_study(Study.from_dict(setup, folder=tmp_path))

@@ -126,7 +126,8 @@ def _measure_planner(algorithm: Mapping[str, Any], problem, max_seconds: float) 
     first, n_maps = problem.stills[0], len(problem.stills)
     search, bounded = build_planner(algorithm, first, max_seconds=max_seconds)
     search.setup(first, seed=1)
-    search.next()
+    while search.has_next():
+        search.next()
     took = working_seconds() - begin
     given = {**algorithm, **algorithm.get("parameters", {})}
     if search.success or not bounded or given.get("max_labels") is not None:

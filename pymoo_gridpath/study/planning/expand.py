@@ -144,6 +144,10 @@ def _check_pairs(study: Study, problems, groups: list[int], algorithms: list[Pla
             if content["obstacles"] == "limit" and content["potential_limit"] is None:
                 message = "obstacles 'limit' needs potential_limit, the largest vulnerability of a path, beside it"
                 raise study.error(message, (*where, "obstacles"))
+            suite = study.problems[group].made_suite()
+            if suite is not None and not suite.backtracking and content["representation"] != planned.spec["representation"]:
+                message = "it changes the representation, and paths of the suite do not backtrack, which only its own codes"
+                raise study.error(f"{about}{message}", where)
             problem = refuse(study, where, about, build_problem, content, planned.grid)
             built = refuse(study, where, about, build_algorithm, settled, problem)
             _check_pop_size(study, k, built, settled)

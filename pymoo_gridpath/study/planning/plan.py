@@ -225,6 +225,8 @@ def _says(algorithm: Mapping[str, Any], flag: str) -> bool:
 def run_key(problem: Mapping[str, Any], algorithm: Mapping[str, Any], budget: Mapping[str, int] | None, seed: int) -> str:
     """Return the key of a run: a hash of all that its result depends on, but for the versions of the software.
 
+    Of files that objectives are made of it says what they hold, and not where they are.
+
     Parameters
     ----------
     problem, algorithm : mapping
@@ -237,9 +239,18 @@ def run_key(problem: Mapping[str, Any], algorithm: Mapping[str, Any], budget: Ma
     str
         The first 32 hexadecimal digits of the SHA-256 of their JSON.
     """
+    problem = {**problem, "objectives": [_without_places(one) for one in problem["objectives"]]}
     content = {"schema": SCHEMA, "problem": problem, "algorithm": algorithm, "budget": budget, "seed": seed}
     text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _without_places(objective: Any) -> Any:
+    """Return an objective in canonical form, of its files what they hold and not where they are."""
+    if isinstance(objective, str) or "files" not in objective:
+        return objective
+    arguments = {key: value for key, value in objective["arguments"].items() if key not in objective["files"]}
+    return {**objective, "arguments": arguments}
 
 
 def needed_for(task: Task) -> str:

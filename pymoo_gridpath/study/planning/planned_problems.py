@@ -21,7 +21,7 @@ from pymoo_gridpath.study.planning.moving import moving_entry
 from pymoo_gridpath.study.planning.plan import PlannedProblem, run_key
 from pymoo_gridpath.study.specification.kinds import objective_entry, representation_entry
 from pymoo_gridpath.study.specification.moving import REPRESENTATION
-from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange
+from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange, beside
 from pymoo_gridpath.study.specification.study import Study
 
 
@@ -73,6 +73,8 @@ def _source(spec: ProblemSpec, items: list[_Item]) -> str:
     """Return where the map of a problem comes from, in words."""
     if spec.random is not None:
         return ""
+    if (suite := spec.made_suite()) is not None:
+        return f"the suite {suite.name}, which {suite.follows}"
     words = [str(spec.map or (spec.grid.name if spec.grid is not None else str(spec.scen).removesuffix(".scen")))]
     if spec.scen is not None:
         words.append(f"query {items[0].suffix} of {spec.scen}" if len(items) == 1 else f"numbered queries of {spec.scen}")
@@ -98,6 +100,13 @@ def _items(study: Study, k: int, spec: ProblemSpec, maps: dict[tuple, OccupancyG
                 refuse(study, (*place_of(k), "random"), f"seed {seed}: ", build_grid(grid).check_query, (0, 0), goal)
             yield _Item(str(seed), grid, None, (0, 0), goal)
         return
+    if (suite := spec.made_suite(study.folder)) is not None:
+        where = (*place_of(k), "suite")
+        grid, start, goal = refuse(study, where, "", lambda: suite.query)
+        refuse(study, where, "", grid.check_query, start, goal)
+        content, cells = pack_grid(grid)
+        yield _Item("", content, cells, start, goal, *place_of_grid(grid))
+        return
     grid, queries = _map_queries(study, k, spec, maps)
     robot = (*place_of(k), "radius" if spec.footprint is None else "footprint")
     grown = refuse(study, robot, "", grid.inflate, spec.radius, spec.footprint)
@@ -120,7 +129,7 @@ def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[Occupan
     if spec.grid is not None:
         grid = spec.grid
     else:
-        path = _map_path(study, spec)
+        path = beside(study.folder, spec.map if spec.map is not None else str(spec.scen).removesuffix(".scen"))
         where = (*place_of(k), "map" if spec.map is not None else "scen")
         options = {key: getattr(spec, key) for key in ("resolution", "unknown", "threshold", "corner_cutting", "moves")}
         key = (path, *options.values())
@@ -133,14 +142,6 @@ def _map_queries(study: Study, k: int, spec: ProblemSpec, maps) -> tuple[Occupan
         return grid, _scen_queries(study, k, spec, scen, grid)
     start, goal = refuse(study, place_of(k), "", ends_of, grid, known, spec.start, spec.goal)
     return grid, [("", start, goal)]
-
-
-def _map_path(study: Study, spec: ProblemSpec) -> str:
-    """Return the path of a map, or the name of a shipped one; a file beside the study goes first, as in `load_map`."""
-    name = spec.map if spec.map is not None else str(spec.scen).removesuffix(".scen")
-    beside = study.folder / name
-    shipped = not os.path.exists(beside) and Path(name).name == name and not Path(name).suffix
-    return name if shipped else os.fspath(beside)
 
 
 def _scen_queries(study: Study, k: int, spec: ProblemSpec, path: Path, grid: OccupancyGrid) -> list[tuple[str, Cell, Cell]]:
@@ -173,14 +174,16 @@ def _moving(study: Study, k: int, spec: ProblemSpec, item: _Item, content: dict[
 def _settings(spec: ProblemSpec, item: _Item) -> dict[str, Any]:
     """Return the canonical form of a problem, but for obstacles that move."""
     default: Any = REPRESENTATION
-    if spec.moving is None:
+    if (suite := spec.made_suite()) is not None:
+        default = representation_entry({"class": REPRESENTATION, **suite.coding})
+    elif spec.moving is None:
         default = default_representation(canonical.steps_of(item.grid)["corner_cutting"], spec.axis)  # pyright: ignore[reportArgumentType]
     return canonical.settle(
         {
             "grid": item.grid,
             "start": list(item.start),
             "goal": list(item.goal),
-            "objectives": [objective_entry(one) for one in spec.objectives],
+            "objectives": [objective_entry(one) for one in spec.scored_by],
             "representation": default if spec.representation is None else representation_entry(spec.representation),
             "obstacles": spec.obstacles,
             "penalty": spec.penalty,

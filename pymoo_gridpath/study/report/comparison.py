@@ -250,6 +250,7 @@ def _record(label: str, result: Result, number: int) -> RunRecord:
         n_members=members.n_members,
         history=None,
         epochs=_epochs(label, result),
+        certified=getattr(result, "certified", None),
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.exact import Certificate
 from pymoo_gridpath.study.planning.plan import Plan, PlannedRun, has_own_budget, is_deterministic
 from pymoo_gridpath.study.report import moving
 from pymoo_gridpath.study.report.references import ProblemReference, reference_of
@@ -54,6 +55,8 @@ class RunResult:
         Of failed runs the traceback, of incomplete exact fronts what the search says.
     complete : bool
         Whether the front of an exact run is whole; True for others.
+    certified : Certificate or None
+        How near an exact search has proven its front to be; None where nothing is proven, as of all other runs.
     F : numpy.ndarray or None, shape (N, n_obj)
         Its legal non-dominated points, kept for the first problem of each group.
     ratio, igd_plus, share : float
@@ -75,6 +78,7 @@ class RunResult:
     status: str = "missing"
     message: str = ""
     complete: bool = True
+    certified: Certificate | None = None
     F: np.ndarray | None = None
     ratio: float = math.nan
     igd_plus: float = math.nan
@@ -252,7 +256,7 @@ def _count_origins(results: Results, records: list[RunRecord]) -> None:
 def measure(result: RunResult, record: RunRecord, reference: ProblemReference, target: float, keep_front: bool) -> None:
     """Enter what a record says, and its measures if it is finished."""
     front = reference.front
-    result.message, result.complete = record.message, record.complete
+    result.message, result.complete, result.certified = record.message, record.complete, record.certified
     if record.status != "finished":
         return
     result.F = record.F if keep_front else None

@@ -126,6 +126,8 @@ def _run(task: Task, started: str) -> RunRecord:
         n_members=members.n_members,
         history=recorder.history(),
         epochs=_epochs(searches, clock) if moves else None,
+        # Of several maps the front of one alone is the run's.
+        certified=getattr(searches[-1].result, "certified", None) if len(searches) == 1 else None,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import math
 import struct
 import zipfile
 import zlib
@@ -15,6 +16,7 @@ import numpy as np
 
 from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.exact import Certificate
 from pymoo_gridpath.study.running.epochs import Epochs
 
 #: Version of the file's layout; a reader refuses files of a later one.
@@ -120,6 +122,8 @@ class RunRecord:
         None for failed runs.
     epochs : Epochs or None
         None where obstacles do not move, and for failed runs.
+    certified : Certificate or None
+        How near an exact search has proven its front to be; None where nothing is proven, as of all other runs.
     """
 
     key: str
@@ -144,9 +148,11 @@ class RunRecord:
     n_members: int
     history: History | None
     epochs: Epochs | None = None
+    certified: Certificate | None = None
 
 
-_ARRAYS = ("X", "F", "turn", "history", "epochs")
+# What is not written as it is.
+_APART = ("X", "F", "turn", "history", "epochs", "certified")
 
 
 def to_bytes(record: RunRecord) -> bytes:
@@ -157,7 +163,10 @@ def to_bytes(record: RunRecord) -> bytes:
     ``epochs`` (structured, of shape (n_epochs,)), ``epoch_points``, ``epoch_of_points`` and ``epoch_of_records``. The comment
     of the archive is the SHA-256 of all that stands before it.
     """
-    meta = {"format": FORMAT} | {key: value for key, value in vars(record).items() if key not in _ARRAYS}
+    meta = {"format": FORMAT} | {key: value for key, value in vars(record).items() if key not in _APART}
+    if record.certified is not None:
+        # JSON has no infinity.
+        meta["certified"] = {name: value if math.isfinite(value) else None for name, value in vars(record.certified).items()}
     # Whole numbers go into the smallest type that holds them; this is what they were.
     meta["dtype"] = record.X.dtype.str
     arrays = {"X": _narrowed(record.X), "F": record.F, "turn": record.turn}
@@ -200,8 +209,11 @@ def from_bytes(data: bytes, genes: bool = True) -> RunRecord:
         history = _unpacked(arrays) if "records" in arrays else None
         X = arrays["X"].astype(kind, copy=False) if genes else np.empty((len(arrays["F"]), 0), dtype=kind)
         epochs = Epochs.unpacked(arrays)
+        if meta.get("certified") is not None:
+            given = {name: math.inf if value is None else float(value) for name, value in meta["certified"].items()}
+            meta["certified"] = Certificate(**given)
         return RunRecord(**meta, X=X, F=arrays["F"], turn=arrays["turn"], history=history, epochs=epochs)
-    except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, TypeError):
+    except (zipfile.BadZipFile, zlib.error, AttributeError, KeyError, ValueError, TypeError):
         raise DamagedRecordError("the run has a checksum and no arrays, expected what a study writes") from None
 
 

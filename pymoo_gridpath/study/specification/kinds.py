@@ -13,6 +13,7 @@ from pymoo_gridpath.operators.sets import MEMBERS
 from pymoo_gridpath.planners import PLANNERS, Planner
 from pymoo_gridpath.planners.base import is_reference
 from pymoo_gridpath.planners.signature import parameters_of
+from pymoo_gridpath.problems import SUITES, Suite
 from pymoo_gridpath.registry import OPERATORS
 from pymoo_gridpath.representations import REPRESENTATIONS, Representation
 from pymoo_gridpath.study.specification import own
@@ -21,6 +22,7 @@ from pymoo_gridpath.study.specification.own import Kind
 OBJECTIVE = Kind("objective", Objective, OBJECTIVES)
 REPRESENTATION = Kind("representation", Representation, REPRESENTATIONS)
 ALGORITHM = Kind("algorithm", Algorithm, {})
+SUITE = Kind("suite", Suite, SUITES)
 
 _REGISTRIES = {Objective: OBJECTIVES, Planner: PLANNERS, Representation: REPRESENTATIONS}
 

@@ -13,7 +13,7 @@ import inspect
 import re
 import sys
 from collections.abc import Mapping
-from importlib.metadata import distribution, packages_distributions
+from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -205,11 +205,18 @@ def code_of(cls: type) -> str:
     if file is None or not Path(file).is_file():
         raise GridPathError(f"the module {cls.__module__} has no file, expected code that other processes can import")
     path = Path(file).resolve()
-    for name in packages_distributions().get(cls.__module__.partition(".")[0], ()):
-        found = distribution(name)
-        # What is installed for development has its files elsewhere, and changes while its version stays.
+    # Where its package lies, a distribution that it is of says so; to ask all that are installed takes a tenth of a second.
+    names = cls.__module__.split(".")
+    place = path.parents[len(names) - (path.stem != "__init__")]
+    for found in distributions(path=[str(place)]):
+        packages = found.read_text("top_level.txt")
+        if packages is not None and names[0] not in packages.split():
+            continue
+        # What is installed for development changes while its version stays: its files are elsewhere, or lie there uninstalled.
+        if all(found.read_text(record) is None for record in ("RECORD", "installed-files.txt")):
+            continue
         if any(part.name == path.name and Path(str(found.locate_file(part))).resolve() == path for part in found.files or ()):
-            return f"{name} {found.version}"
+            return f"{found.name} {found.version}"
     return f"sha256 {hashlib.sha256(path.read_bytes()).hexdigest()}"
 
 
@@ -304,7 +311,8 @@ def _arguments(cls: type, name: str, given: Mapping[str, Any], where: Where) -> 
 def _arguments_of(thing: Any, kind: Kind, where: Where) -> dict[str, Any]:
     """Return the arguments that make an object like the one that is given."""
     cls = type(thing)
-    kept = {key: held(thing, key) for key in parameters_of(cls) if key not in _ELSEWHERE and hasattr(thing, key)}
+    elsewhere = _ELSEWHERE if isinstance(thing, Representation) else _INHERITED
+    kept = {key: held(thing, key) for key in parameters_of(cls) if key not in elsewhere and hasattr(thing, key)}
     needed = [item.name for item in inspect.signature(cls).parameters.values() if item.default is item.empty][
         len(_leading(thing)) :
     ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +15,17 @@ from pymoo_gridpath.grid import CornerCutting, OccupancyGrid
 from pymoo_gridpath.grid.arguments import as_footprint
 from pymoo_gridpath.maps import MAX_CELLS
 from pymoo_gridpath.objectives import Objective, make_objectives
-from pymoo_gridpath.problems import OBSTACLES
+from pymoo_gridpath.planners.signature import parameters_of
+from pymoo_gridpath.problems import OBSTACLES, Suite, make_suite
 from pymoo_gridpath.study.specification import own, values
 from pymoo_gridpath.study.specification.base import AXES, check_problem_settings, make_spec, set_fields, set_given
-from pymoo_gridpath.study.specification.kinds import OBJECTIVE
+from pymoo_gridpath.study.specification.kinds import OBJECTIVE, SUITE
 from pymoo_gridpath.study.specification.moving import MovingObstacles, check_moving
+from pymoo_gridpath.study.specification.values import Where
 
 UNKNOWN = ("free", "occupied")
+# What is minimised where neither the problem nor a suite says so.
+_OBJECTIVES = ("length", "vulnerability")
 # What says which steps a grid has.
 _STEPS = ("corner_cutting", "moves")
 
@@ -80,7 +86,7 @@ class QueryRange:
 
 @dataclass(frozen=True, kw_only=True)
 class ProblemSpec:
-    """One table ``[[problems]]``: a map and query, some queries of a ``.scen`` file, or a family of random grids.
+    """One table ``[[problems]]``: a map and query, queries of a ``.scen`` file, a family of random grids, or one of a suite.
 
     Parameters
     ----------
@@ -91,6 +97,10 @@ class ProblemSpec:
         A map file, relative to the study file, or the name of a shipped map.
     scen : str, optional
         A MovingAI scenario file; ``map`` is by default the same name without ``.scen``.
+    suite : str, mapping, type or Suite, optional
+        One of the problems of a published suite: a table of its name as ``class`` and of its arguments, such as
+        ``{ class = "asletismac", instance = "ASLETISMAC_NO_X14_Y14_PM_K3_BF" }``; see `pymoo_gridpath.problems.SUITES`. Names
+        of files among them are relative to the study file.
     grid : OccupancyGrid, optional
         In Python, in place of ``map``.
     queries : QueryRange, mapping or sequence of int, optional
@@ -106,9 +116,9 @@ class ProblemSpec:
     moving : MovingObstacles or mapping, optional
         Obstacles that move while the search goes on; paths are then coded as "cells", and obstacles are a penalty.
     objectives, representation, obstacles, penalty, potential_limit, axis : optional
-        See `GridPathProblem`. An objective or the representation may be of your own: the path of its class,
-        ``"package.module:Class"``, a table of ``class`` and its arguments, the class, or an object; a representation is made
-        anew for each grid and query.
+        See `GridPathProblem`; objectives of a suite go by their names, and all of these are the default then. An objective or
+        the representation may be of your own: the path of its class, ``"package.module:Class"``, a table of ``class`` and its
+        arguments, the class, or an object; a representation is made anew for each grid and query.
 
     Raises
     ------
@@ -122,6 +132,7 @@ class ProblemSpec:
     random: Any = None
     map: str | None = None
     scen: str | None = None
+    suite: Any = None
     grid: OccupancyGrid | None = None
     queries: Any = None
     start: tuple[int, int] | None = None
@@ -134,7 +145,7 @@ class ProblemSpec:
     corner_cutting: CornerCutting | None = None
     moves: int | None = None
     moving: Any = None
-    objectives: Any = ("length", "vulnerability")
+    objectives: Any = None
     representation: Any = None
     obstacles: str = "penalty"
     penalty: float | None = None
@@ -154,7 +165,7 @@ class ProblemSpec:
         set_given(self, "threshold", check=lambda value, where: values.real(value, where, 0.0, 1.0))
         set_given(self, "corner_cutting", check=values.corner_cutting)
         set_given(self, "moves", check=values.moves)
-        set_fields(self, objectives=_objectives(self.objectives))
+        set_given(self, "objectives", check=self._objectives)
         set_fields(self, obstacles=values.choice(self.obstacles, OBSTACLES, ("obstacles",)))
         set_fields(self, axis=values.choice(self.axis, AXES, ("axis",)))
         check_problem_settings(self)
@@ -164,31 +175,74 @@ class ProblemSpec:
             check_moving(self)
 
     def _check_source(self) -> None:
-        sources = [key for key in ("random", "map", "grid") if getattr(self, key) is not None]
-        if self.scen is not None and self.random is not None:
+        sources = [key for key in ("random", "suite", "map", "grid") if getattr(self, key) is not None]
+        if self.scen is not None and sources and sources[0] in ("random", "suite"):
             sources.append("scen")
         if len(sources) > 1:
             raise StudyError(f"the problem has {sources[0]} and {sources[1]}, expected one of them", (sources[1],))
         if not sources and self.scen is None:
-            raise StudyError("the problem has no grid, expected one of the keys random, map or scen")
+            raise StudyError("the problem has no grid, expected one of the keys random, suite, map or scen")
         if self.grid is not None and not isinstance(self.grid, OccupancyGrid):
             raise StudyError(f"grid is {values.show(self.grid)}, expected an OccupancyGrid", ("grid",))
         if self.random is not None:
             set_fields(self, random=make_spec(RandomFamily, self.random, ("random",)))
+        if self.suite is not None:
+            set_fields(self, suite=own.form(own.read(self.suite, SUITE, ("suite",))))
+            self._check_suite()
         misplaced = {
+            "suite": ("start", "goal", "radius", "footprint", "resolution", "unknown", "threshold", *_STEPS, "queries"),
             "random": ("start", "goal", "radius", "footprint", "resolution", "unknown", "threshold", *_STEPS, "queries"),
             "grid": ("resolution", "unknown", "threshold", *_STEPS),
         }
         for source, keys in misplaced.items():
             for key in keys:
                 if getattr(self, source) is not None and getattr(self, key) not in (None, 0.0):
-                    inside = "; write it into the table random" if key in _STEPS and source == "random" else ""
+                    inside = f"; write it into the table {source}" if self._takes(source, key) else ""
                     raise StudyError(f"{key} is for maps from a file, not for a problem with {source}{inside}", (key,))
         if self.scen is not None and (self.start or self.goal):
             key = "start" if self.start else "goal"
             raise StudyError(f"{key} comes from the scen file; expected queries, to say which of it", (key,))
         if self.scen is None and self.queries is not None:
             raise StudyError("queries are those of a scen file, and the problem has no scen", ("queries",))
+
+    def _takes(self, source: str, key: str) -> bool:
+        """Whether the table of a source has a place for what stands beside it."""
+        if source == "random":
+            return key in _STEPS
+        return source == "suite" and key in parameters_of(own.read(self.suite, SUITE, ("suite",)).cls)
+
+    def _check_suite(self) -> None:
+        where = ("suite",)
+        try:
+            made = self.made_suite()
+        except GridPathError as error:
+            raise StudyError(str(error), where) from None
+        if made is not None and not made.backtracking:
+            for key in ("representation", "moving"):
+                if getattr(self, key) is not None:
+                    raise StudyError(
+                        f"{key} is not for a suite whose paths do not backtrack, which says how they are coded", (key,)
+                    )
+
+    def made_suite(self, folder: str | os.PathLike[str] = "") -> Suite | None:
+        """Return the problem of a suite, with its files in a folder; None if the problem is of none."""
+        if self.suite is None:
+            return None
+        cls: Any
+        cls, _, arguments = own.read(self.suite, SUITE, ("suite",))
+        files = {key: beside(folder, arguments[key]) for key in cls.files if isinstance(arguments.get(key), str)}
+        return make_suite(cls, **arguments | files)
+
+    def _objectives(self, value: Any, where: Where) -> tuple[Any, ...]:
+        suite = self.made_suite()
+        return _objectives(value if suite is None else values.told(where, suite.chosen, value))
+
+    @functools.cached_property
+    def scored_by(self) -> tuple[Any, ...]:
+        """The objectives, those that are the default included, as the study holds them."""
+        suite = self.made_suite()
+        default = _OBJECTIVES if suite is None else suite.objectives
+        return _objectives(default) if self.objectives is None else self.objectives
 
     def _check_obstacles(self) -> None:
         if self.obstacles == "constraint" and self.penalty is not None:
@@ -207,8 +261,37 @@ class ProblemSpec:
             return f"random-{self.random.size}-{self.random.p0:g}"
         if self.grid is not None:
             return self.grid.name
+        if (suite := self.made_suite()) is not None:
+            return suite.label
         source = str(self.map or self.scen)
         return Path(source.removesuffix(".scen")).stem
+
+
+def beside(folder: str | os.PathLike[str], name: str) -> str:
+    """Return the path of a map in a folder, or the name of a shipped one; a file goes first, as in `load_map`."""
+    path = Path(folder) / name
+    shipped = not os.path.exists(path) and Path(name).name == name and not Path(name).suffix
+    return name if shipped else os.fspath(path)
+
+
+def problem_in(item: Any, where: Where, folder: Path) -> ProblemSpec:
+    """Return a problem of a study; files of objectives in its table are looked for in the study's folder, as maps are."""
+    if isinstance(item, Mapping) and isinstance(item.get("objectives"), list | tuple):
+        item = {**item, "objectives": [_with_files(one, folder) for one in item["objectives"]]}
+    return make_spec(ProblemSpec, item, where)
+
+
+def _with_files(item: Any, folder: Path) -> Any:
+    """Return an objective, a table with its files where they are."""
+    if not isinstance(item, Mapping):
+        return item
+    try:
+        files = own.read({"class": item.get("class")}, OBJECTIVE, ("objectives",)).cls.files
+    except StudyError:
+        # It is said by whoever makes the problem.
+        return item
+    found = {key: str((folder / item[key]).absolute()) for key in files if isinstance(item.get(key), str)}
+    return {**item, **found}
 
 
 def _objectives(value: Any) -> tuple[Any, ...]:

@@ -7,8 +7,9 @@ checked without reading a map. `plan_study` checks the rest.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from pymoo_gridpath.errors import GridPathError, StudyError
 from pymoo_gridpath.study.specification import values
 from pymoo_gridpath.study.specification.algorithm import AlgorithmSpec
 from pymoo_gridpath.study.specification.base import make_spec, set_fields, to_table
-from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange, RandomFamily
+from pymoo_gridpath.study.specification.problem import ProblemSpec, QueryRange, RandomFamily, problem_in
 from pymoo_gridpath.study.specification.source import Source
 from pymoo_gridpath.study.specification.values import Where
 
@@ -45,7 +46,7 @@ class Study:
     target : float, default 0.95
         Share of the reference's hypervolume that "to target" asks for, above 0, at most 1.
     folder : path-like, default "."
-        What the paths of maps are relative to.
+        What the paths of maps, and of the files of objectives in tables, are relative to.
 
     Raises
     ------
@@ -75,16 +76,17 @@ class Study:
     source: Source | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self):
+        folder = Path(checks.file_path("folder", self.folder, StudyError))
         set_fields(
             self,
             name=values.text(self.name, ("name",)),
-            problems=_specs(ProblemSpec, self.problems, "problems"),
-            algorithms=_specs(AlgorithmSpec, self.algorithms, "algorithms"),
+            problems=_specs(partial(problem_in, folder=folder), self.problems, "problems"),
+            algorithms=_specs(partial(make_spec, AlgorithmSpec), self.algorithms, "algorithms"),
             seeds=values.seeds(self.seeds, ("seeds",)),
             budget=_budget(self.budget),
             reference=_reference(self.reference),
             target=values.real(self.target, ("target",), 0.0, 1.0, open_below=True),
-            folder=Path(checks.file_path("folder", self.folder, StudyError)),
+            folder=folder,
         )
         moves = all(problem.moving is not None for problem in self.problems)
         if self.budget is None and not moves:
@@ -142,19 +144,19 @@ def _as_place(where: Where, least: int = 0) -> Where:
     return place
 
 
-def _specs(cls: Any, items: Any, key: str) -> tuple[Any, ...]:
+def _specs(make: Callable[[Any, Where], Any], items: Any, key: str) -> tuple[Any, ...]:
     """Return one or more dataclasses with different labels."""
     if not isinstance(items, Sequence) or isinstance(items, str):
         raise StudyError(f"{key} is {values.show(items)}, expected one or more tables [[{key}]]", (key,))
     if not items:
         raise StudyError(f"the study has no {key}, expected one or more tables [[{key}]]", (key,))
-    made = tuple(make_spec(cls, item, (key, k)) for k, item in enumerate(items))
+    made = tuple(make(item, (key, k)) for k, item in enumerate(items))
     labels: dict[str, int] = {}
     for k, spec in enumerate(made):
         label = spec.label
         if label in labels:
             raise StudyError(
-                f"{cls.owner} before is called {label!r} too; give one of the two another name",
+                f"{spec.owner} before is called {label!r} too; give one of the two another name",
                 (key, k, "name"),
             )
         labels[label] = k

@@ -489,4 +489,6 @@ def test_every_usable_algorithm_can_be_studied(name):
 def test_what_was_stored_is_looked_for_among_what_has_a_name():
     """A coding or an objective that is made for one problem, such as paths in time, is none that a study names."""
     assert set(of_package(Representation)) == {"integer", "binary", "mixed", "absolute", "cells"}
-    assert set(of_package(Objective)) == {"length", "vulnerability", "turn", "inflation", "clearance", "ground", "climb"}
+    of_suites = {"ascent", "delay", "travel_time", "random_cost", "integer_length", "exposure"}
+    general = {"length", "vulnerability", "turn", "inflation", "clearance", "ground", "climb"}
+    assert set(of_package(Objective)) == general | of_suites

@@ -11,6 +11,8 @@ import synthetic_study as made
 from synthetic_study import Page, digests, rows, texts
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.problems import random_dense_grid
+from pymoo_gridpath.study import ProblemSpec, Store, Study, run_study
 from pymoo_gridpath.study.report import write_report
 from pymoo_gridpath.study.report.page.contents import slugs
 from pymoo_gridpath.study.report.references import gist
@@ -259,3 +261,22 @@ def test_slugs_differ():
 def test_the_gist_of_a_traceback_is_its_last_line():
     assert gist("Traceback (most recent call last):\n  File\nValueError: why\n") == "ValueError: why"
     assert gist("out of time\nmore") == "out of time" and gist("") == ""
+
+
+def test_what_is_certified_of_exact_fronts_stands_in_the_tables(tmp_path):
+    problem = ProblemSpec(grid=random_dense_grid(40, 0.2, 3), start=(0, 0), goal=(39, 39), representation="cells")
+    near = {"algorithm": "exact", "name": "near", "parameters": {"epsilon": 0.05}}
+    cut = {"algorithm": "exact", "name": "cut", "max_labels": 300}
+    searched = {"algorithm": "NSGA2", "name": "searched", "pop_size": 10}
+    study = Study(problems=[problem], algorithms=[near, cut, searched], seeds=1, budget={"generations": 2})
+    run_study(study, tmp_path / "store")
+    write_report(tmp_path / "store", output=tmp_path / "report", formats="png")
+    found = {row["algorithm"]: row for row in rows(tmp_path / "report" / "runs.csv")}
+    records = {name: Store(tmp_path / "store").read(row["key"]) for name, row in found.items()}
+    for name in ("near", "cut"):
+        certified, row = records[name].certified, found[name]
+        assert certified is not None and f"within {certified.short}" in records[name].message
+        assert (float(row["certified_epsilon"]), float(row["certified_share"])) == (certified.epsilon, certified.share)
+        assert f"| {certified.short} |" in (tmp_path / "report" / "report.md").read_text(encoding="utf-8")
+    assert 0.0 < records["near"].certified.epsilon <= 0.05 and records["searched"].certified is None
+    assert (found["searched"]["certified_epsilon"], found["searched"]["certified_share"]) == ("", "")

@@ -17,6 +17,7 @@ from hypothesis.extra import numpy as arrays
 from small_studies import history, record
 
 from pymoo_gridpath.errors import GridPathError
+from pymoo_gridpath.exact import Certificate
 from pymoo_gridpath.study.running.record import DamagedRecordError, History, RunRecord, from_bytes, read_meta, to_bytes
 
 
@@ -48,7 +49,8 @@ def assert_same(a: RunRecord, b: RunRecord) -> None:
         {"X": np.array([[0.1, np.pi]]), "F": np.array([[-0.0, 1e-300]])},
         {"X": np.array([[2**40, -(2**40)]])},
         {"X": np.empty((0, 7), dtype=int), "F": np.empty((0, 2))},
-        {"budget": None, "seed": 0},
+        {"budget": None, "seed": 0, "certified": Certificate(0.0, 0.0)},
+        {"complete": False, "certified": Certificate(np.inf, 0.25)},
     ],
 )
 def test_what_is_read_is_what_was_written(changes):

@@ -73,9 +73,10 @@ def _runs(results: Results, measures: list[str]) -> tuple[list[str], Iterator[li
             names = [problem.group, problem.label, results.algorithms[run.algorithm], run.seed, run.key]
             kind = kind_of(front)
             values = [getattr(run, number) for number in numbers]
-            yield [*names, run.status, feasible, kind, len(front), *values, complete, gist(run.message)]
+            certified = [None, None] if run.certified is None else [run.certified.epsilon, run.certified.share]
+            yield [*names, run.status, feasible, kind, len(front), *values, complete, *certified, gist(run.message)]
 
-    return [*header, *numbers, "complete", "message"], rows()
+    return [*header, *numbers, "complete", "certified_epsilon", "certified_share", "message"], rows()
 
 
 def _problems(results: Results, times: bool) -> tuple[list[str], Iterator[list]]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pymoo_gridpath.exact.nearness import WHOLE, together
 from pymoo_gridpath.study.report.results import Results
 from pymoo_gridpath.study.report.statistics.comparisons import TESTED, Comparison
 from pymoo_gridpath.study.report.statistics.significance import ALPHA
@@ -39,7 +40,11 @@ def reference_phrase(results: Results, problems: Sequence[int]) -> str:
 def quality_table(results: Results, problems: Sequence[int], name: str, place: str, comparison: Comparison) -> Table:
     """Return how good the final fronts of each algorithm are, and than which others its ratio is significantly better."""
     header = ["#", "algorithm", "finished", "feasible", "hypervolume ratio", "IGD+", "front found", "mean turn (degrees)"]
-    header.append("better than")
+    finished = [results.finished(k, problems) for k in range(len(results.algorithms))]
+    certified = [together([run.certified for run in runs]) if runs else None for runs in finished]
+    # Where all that were certified are whole, the note on what is not complete says as much.
+    shown = any(one not in (None, WHOLE) for one in certified)
+    header += ["certified"] * shown + ["better than"]
     rows = []
     for k, label in enumerate(results.algorithms):
         runs = results.finished(k, problems)
@@ -47,12 +52,17 @@ def quality_table(results: Results, problems: Sequence[int], name: str, place: s
         cells = [str(k + 1), label, n, _feasible(runs)]
         for measure, show in (("ratio", ratio), ("igd_plus", significant), ("share", percent), ("turn", count)):
             cells.append(spread(quartiles(results.values(measure, k, problems)), show))
+        if shown:
+            one = certified[k]
+            cells.append(NOTHING if one is None else one.short)
         rows.append([*cells, _better_than(comparison, k)])
     what = f"Final fronts {place}, measured against {reference_phrase(results, problems)}."
     if results.references[problems[0]].epochs:
         what = f"Fronts at the end of each epoch {place}, means over the epochs, each measured against "
         what += f"{reference_phrase(results, problems)} of its own map; the turn is that of the last."
     notes = [f"Median [quartiles] over all finished runs. {_explain_better(comparison)}", *_incomplete(results, problems)]
+    if shown:
+        notes.insert(1, "Certified: how near to the exact front, by a factor or a share of range, the worst is proven to be.")
     return Table(f"{name}-quality", what, header, rows, left=2, notes=notes)
 
 
