@@ -34,13 +34,22 @@ def kernel(function: F) -> F:
     Kernels take numbers and arrays and give the same bits either way. They draw no random numbers of their own and keep to
     whole numbers below 2**63 and to sums and products of floats, which Python and the compiler carry out alike.
     """
+    return _compiled(function)
+
+
+def inlined(function: F) -> F:
+    """Return a kernel that becomes part of those that call it, where the compiler would take it for too large."""
+    return _compiled(function, forceinline=True)
+
+
+def _compiled(function: F, **options) -> F:
     if numba is None:
         return function
     _kernels.add(function)
     try:
-        return numba.njit(cache=True, nogil=True)(function)  # pyright: ignore[reportReturnType]
+        return numba.njit(cache=True, nogil=True, **options)(function)  # pyright: ignore[reportReturnType]
     except RuntimeError:  # no folder to keep compiled code in
-        return numba.njit(nogil=True)(function)  # pyright: ignore[reportReturnType]
+        return numba.njit(nogil=True, **options)(function)  # pyright: ignore[reportReturnType]
 
 
 def is_ctrl_c(error: BaseException | None) -> bool:

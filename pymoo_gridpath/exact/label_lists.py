@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.compiled import inlined, kernel
 
 # Rows of the smallest block; that of a level has twice as many as that of the level below.
 _LEAST_ROWS = 4
 
-# Columns of the array of lists: first row, number of rows in use, and level, -1 before there is a block.
-BEGIN, SIZE, LEVEL = range(3)
+# Columns of the array of lists: first row, number of rows in use, and number of the level above, 0 before there is a block.
+BEGIN, SIZE, ABOVE = range(3)
 
 # Places in the array of what is taken: rows, the highest level, and the first free block of each level.
 N_ROWS, HIGHEST, FREE = range(3)
@@ -24,7 +24,7 @@ def empty_lists(n_lists: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return so many lists, int64, shape (n_lists, 3), their rows, int64, shape (n, 3), and what is taken of these, int64."""
     taken = np.full(64, -1)
     taken[N_ROWS] = taken[HIGHEST] = 0
-    return np.tile(np.array([0, 0, -1]), (n_lists, 1)), np.empty((4096, 3), dtype=np.int64), taken
+    return np.zeros((n_lists, 3), dtype=np.int64), np.empty((4096, 3), dtype=np.int64), taken
 
 
 @kernel
@@ -36,12 +36,12 @@ def has_room(rows, taken, n_inserts):
 @kernel
 def place_behind(rows, begin, end, third):
     """Return the first of the rows from ``begin`` to ``end`` whose third cost is larger, or ``end``."""
-    while begin < end:
-        middle = (begin + end) >> 1
-        if rows[middle, 1] <= third:
-            begin = middle + 1
-        else:
-            end = middle
+    n = end - begin
+    while n > 0:
+        # Without a branch, which processors would guess wrong half the time.
+        half = (n + 1) >> 1
+        begin += half * (rows[begin + half - 1, 1] <= third)
+        n -= half
     return begin
 
 
@@ -49,28 +49,36 @@ def place_behind(rows, begin, end, third):
 def covered(lists, rows, number, second, third, steps):
     """Whether two costs and a number of steps are dominated by, or equal to, a row of a list."""
     begin = lists[number, BEGIN]
-    k = place_behind(rows, begin, begin + lists[number, SIZE], third) - 1
-    while k >= begin:
+    return covered_before(rows, begin, place_behind(rows, begin, begin + lists[number, SIZE], third), second, steps)
+
+
+@kernel
+def covered_before(rows, begin, behind, second, steps):
+    """The same, where those before a row are the ones that have no larger third cost."""
+    for k in range(behind - 1, begin - 1, -1):
         if rows[k, 0] <= second:
             if rows[k, 2] <= steps:
                 return True
         elif rows[k, 2] >= steps:
             # A row before this one that covered the new one would cover this one, too.
             return False
-        k -= 1
     return False
 
 
-@kernel
+@inlined
 def insert(lists, rows, taken, number, second, third, steps):
     """Add a row to a list and drop those that it dominates; nothing if the list covers it already."""
-    if covered(lists, rows, number, second, third, steps):
+    begin, size = lists[number, BEGIN], lists[number, SIZE]
+    place = place_behind(rows, begin, begin + size, third)
+    if covered_before(rows, begin, place, second, steps):
         return
-    if lists[number, LEVEL] < 0 or lists[number, SIZE] == _LEAST_ROWS << lists[number, LEVEL]:
+    while place > begin and rows[place - 1, 1] == third:
+        place -= 1
+    if lists[number, ABOVE] == 0 or size == _LEAST_ROWS << (lists[number, ABOVE] - 1):
         enlarge(lists, rows, taken, number)
-    begin = lists[number, BEGIN]
-    end = begin + lists[number, SIZE]
-    place = place_behind(rows, begin, end, third - 1)
+        place += lists[number, BEGIN] - begin
+        begin = lists[number, BEGIN]
+    end = begin + size
     kept = place
     k = place
     while k < end:
@@ -90,7 +98,7 @@ def insert(lists, rows, taken, number, second, third, steps):
     lists[number, SIZE] = kept + 1 + end - k - begin
 
 
-@kernel
+@inlined
 def copy(rows, source, target, n):
     """Copy ``n`` rows to where they, too, may be."""
     if source < target:
@@ -106,17 +114,17 @@ def copy(rows, source, target, n):
 @kernel
 def enlarge(lists, rows, taken, number):
     """Move a list to a block of the next level."""
-    old, level = lists[number, BEGIN], lists[number, LEVEL]
-    new = taken[FREE + level + 1]
+    old, level = lists[number, BEGIN], lists[number, ABOVE]
+    new = taken[FREE + level]
     if new >= 0:
-        taken[FREE + level + 1] = rows[new, 0]
+        taken[FREE + level] = rows[new, 0]
     else:
         new = taken[N_ROWS]
-        taken[N_ROWS] += _LEAST_ROWS << (level + 1)
-        taken[HIGHEST] = max(taken[HIGHEST], level + 1)
-    if level >= 0:
+        taken[N_ROWS] += _LEAST_ROWS << level
+        taken[HIGHEST] = max(taken[HIGHEST], level)
+    if level > 0:
         copy(rows, old, new, lists[number, SIZE])
-        rows[old, 0] = taken[FREE + level]
-        taken[FREE + level] = old
+        rows[old, 0] = taken[FREE + level - 1]
+        taken[FREE + level - 1] = old
     lists[number, BEGIN] = new
-    lists[number, LEVEL] = level + 1
+    lists[number, ABOVE] = level + 1

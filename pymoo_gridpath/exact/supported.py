@@ -146,10 +146,11 @@ def _supported_points(
         near = (bounds[0] <= most[0]) & (bounds[1] <= most[1])
         moves, costs, start, goal, (bounds,) = _around(near, moves, costs, start, goal, [bounds])
     backward = moves.backward()
-    spent = [_spent(moves, backward, costs, k, start, bounds, most[k], meter) for k in range(2)]
-    spent = np.stack(spent)
+    # Where both ends are the same point there are no weights to come, and either cost tells which cells its paths visit.
+    needed = range(2 if left != right else 1)
+    spent = np.stack([_spent(moves, backward, costs, k, start, bounds, most[k], meter) for k in needed])
     if parted:
-        near = (spent[0] + bounds[0] <= most[0]) & (spent[1] + bounds[1] <= most[1])
+        near = np.all([spent[k] + bounds[k] <= most[k] for k in needed], axis=0)
         moves, costs, start, goal, (bounds, spent) = _around(near, moves, costs, start, goal, [bounds, spent])
 
     def minimise(gap):

@@ -90,18 +90,21 @@ class _Search(LabelSearch):
         self.n_headings = 8 if costs.with_heading else 1
         # Where any number of steps will do, none are counted.
         self.per_step, self.most_steps = (0, 0) if most_steps is None else (1, most_steps)
-        bounds = [self._bound(costs.take([k, k]), meter) for k in range(3)]
-        left = None if most_steps is None else self._bound(_steps_alone(costs), meter)
-        self.bounds = np.stack([*bounds, np.zeros_like(bounds[0]) if left is None else left], axis=1)
+        self.bounds = np.zeros((moves.n_cells, self.n_headings, 4), dtype=np.int64)
+        for k in range(3):
+            self.bounds[..., k] = self._bound(costs.take([k, k]), meter)
+        if most_steps is not None:
+            self.bounds[..., 3] = self._bound(_steps_alone(costs), meter)
+        self.bounds = self.bounds.reshape(-1, 4)
         # The last list is that of the paths found.
         self.lists, self.rows, self.taken = empty_lists(len(self.bounds) + 1)
         self.begin()
 
     def _bound(self, costs: Costs, meter: Meter) -> np.ndarray:
-        """Return the least cost from every state, where two costs are the same."""
+        """Return the least cost from every cell, by the heading if that matters, where two costs are the same."""
         with_heading = costs.with_heading
         found = backward_costs(self.moves, costs.step, costs.field, self.goal, with_heading, stop=meter.stop, enter=costs.enter)
-        return found[0][0] if with_heading else np.repeat(found[0][0], self.n_headings)
+        return found[0][0].reshape(self.moves.n_cells, -1)
 
     def open_first(self, cell: int, heading: int, state: int) -> bool:
         f = self.costs.step[:, 8, heading] + self.costs.field[:, cell] + self.bounds[state, :3]

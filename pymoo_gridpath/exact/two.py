@@ -54,9 +54,11 @@ LEAST2, BOUND1, BOUND2, FIELD1, FIELD2 = range(5)
 _ROUNDING = 1e-12
 
 # The passes before the last one ask a label to be better by this share of what the second objective has left to fall.
-# They ask the less the later they come; several pay only on large grids.
+# They ask the less the later they come; several pay only on large grids, and none on small ones, nor on medium ones where the
+# hull is as near to the front as that.
 _TOLERANCES, _TOLERANCES_ON_LARGE = (0.01,), (0.02, 0.006, 0.002)
-_LARGE = 2**17
+_SMALL, _MEDIUM, _LARGE = 2**14, 2**16, 2**17
+_NEAR = Allowance(epsilon=0.02)
 
 # Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.
 _CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
@@ -102,8 +104,7 @@ def fronts_of_two(
     goes_on = not meter.message and not allowance.allows(proven)
     if goes_on and pace.due(2 * hull.bounds.shape[1], len(known), len(hull.paths[0])):
         yield lambda: _on_the_whole(moves, hull, found[0], hull.certificate(hull.points))
-    tolerances = _TOLERANCES_ON_LARGE if hull.moves.n_cells > _LARGE else _TOLERANCES
-    for tolerance in (*tolerances, 0.0):
+    for tolerance in (*_tolerances(hull), 0.0):
         if meter.message or allowance.allows(proven):
             break
         search = _Search(hull, known, tolerance, allowance)
@@ -125,6 +126,16 @@ def fronts_of_two(
 def _on_the_whole(moves: Moves, hull: Hull, front: Front, proven: Certificate | None) -> Front:
     """Return a front that was found on a part of the grid as one of the whole, with what is proven of it."""
     return Front([moves.from_grid(hull.moves.to_grid(path)) for path in front.paths], front.points, proven)
+
+
+def _tolerances(hull: Hull) -> tuple[float, ...]:
+    """Return the tolerances of the passes before the last one."""
+    n_cells = hull.moves.n_cells
+    few = len(hull.points) == 1 or n_cells <= _SMALL or (n_cells <= _MEDIUM and _NEAR.allows(hull.certificate(hull.points)))
+    # Which of equal paths is found hangs on all labels where costs depend on headings, those of the passes too.
+    if few and not hull.costs.with_heading:
+        return ()
+    return _TOLERANCES_ON_LARGE if n_cells > _LARGE else _TOLERANCES
 
 
 def _so_far(moves: Moves, hull: Hull, found: list[Front], search: _Search) -> Front:

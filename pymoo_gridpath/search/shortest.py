@@ -103,14 +103,16 @@ class Backward:
         self.cost = np.full((2, moves.n_cells * (8 if with_heading else 1)), UNREACHABLE)
         self.ahead = np.full(self.cost.shape[1], -1, dtype=np.int8)
         self.cost[:, slice(8 * goal, 8 * goal + 8) if with_heading else goal] = 0
-        width, n_lists = (0, 0) if with_heading else self._lists()
+        width, n_lists = self._lists()
         self._shift, self._lists_of = width.bit_length() - 1, None
         # Whether weights are applied on the way, to what each step takes.
         self._fused = weights is not None and n_lists > 0
         if n_lists:
-            self._lists_of = np.full(n_lists, -1, dtype=np.int32), np.full((2, moves.n_cells), -1, dtype=np.int32)
-            self._lists_of[0][0] = goal
-            self._counts, self._step = np.array([0, 1]), np.ascontiguousarray(self.step[:, 8])
+            self._lists_of = np.full(n_lists, -1, dtype=np.int32), np.full((2, self.cost.shape[1]), -1, dtype=np.int32)
+            goals = np.arange(8 * goal, 8 * goal + 8) if with_heading else np.array([goal])
+            self._lists_of[0][0] = goals[0]
+            self._lists_of[1][0, goals[:-1]], self._lists_of[1][1, goals[1:]] = goals[1:], goals[:-1]
+            self._counts = np.array([0, len(goals)])
             self._spent = None if spent is None else np.atleast_2d(spent)
             return
         if weights is not None:
@@ -125,21 +127,28 @@ class Backward:
             self.spent = np.zeros(moves.n_cells, dtype=np.int64)
 
     def _lists(self) -> tuple[int, int]:
-        """Return the width in first cost of the lists that cells may be taken from, and how many it takes; 0 if they do not do.
+        """Return the width in first cost of the lists that states may be taken from, and how many; 0 if they do not do.
 
-        A step that costs less than the width would lead from a list to itself.
+        A step that costs less than the width would lead from a list to itself. That does no harm in one of a single cost, if
+        the second is the same.
         """
         least, most = int(self.step[0].min()), int(self.step[0].max())
-        if least <= 0:
+        if (least <= 0 or self.with_heading) and not self._alone:
             return 0, 0
         for costs in (self.field, self.enter):
             if costs is not None and self.weights is None:
                 most += int(costs[0].max())
             elif costs is not None and self.weights is not None:
                 most += sum(int(weight * int(part.max())) + 1 for weight, part in zip(self.weights, costs, strict=True))
-        width = 1 << (least.bit_length() - 1)
+        width = 1 << (max(least, 1).bit_length() - 1)
         n_lists = 1 << (most // width + 2).bit_length()
         return (width, n_lists) if n_lists <= _MOST_LISTS else (0, 0)
+
+    @property
+    def _alone(self) -> bool:
+        """Whether both costs are the same."""
+        pairs = self.step, self.field, self.enter
+        return self.weights is None and all(pair is None or np.array_equal(*pair) for pair in pairs)
 
     def run(self, stop: Callable[[], bool] | None = None, until: int | None = None, beyond: int = UNREACHABLE) -> None:
         """Go on until all is found.
@@ -156,7 +165,8 @@ class Backward:
         moves, until = self.moves, -1 if until is None else until
         while True:
             if self._lists_of is not None:
-                costs = self._step, self.field, self.enter, self._fused, self.weights or (1.0, 0.0), self._spent
+                costs = self.step, self.field, self.enter, 8 if self.with_heading else None
+                costs = *costs, self._fused, self.weights or (1.0, 0.0), self._spent
                 lists = *self._lists_of, self._counts, self._shift
                 done = _take(
                     moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS
@@ -257,6 +267,7 @@ def _take(
     step,
     field,
     enter,
+    headings,
     fused,
     weights,
     spent,
@@ -271,19 +282,21 @@ def _take(
     beyond,
     max_pops,
 ):
-    """Take at most so many cells from lists, those of the list with the least first costs first.
+    """Take at most so many states from lists, those of the list with the least first costs first.
 
-    Cells are in the list of their first cost, by its bits from ``shift`` on; lists come round again. No step costs less than a
+    States are in the list of their first cost, by its bits from ``shift`` on; lists come round again. No step costs less than a
     list is wide, so that the costs of what is in it are final once its turn has come.
 
     Parameters
     ----------
+    headings : int, or None
+        8 where costs depend on the heading; None, so that the compiler leaves out what is for them, where they do not.
     lists : int32, shape (n,)
-        The first cell of each list, -1 if it has none; n is a power of two.
-    links : int32, shape (2, n_cells)
-        The next cell in the list of each, and the one before, -1 at the ends.
+        The first state of each list, -1 if it has none; n is a power of two.
+    links : int32, shape (2, n_states)
+        The next state in the list of each, and the one before, -1 at the ends.
     counts : int64, shape (2,)
-        The number of the list whose turn it is, and how many cells are in all lists.
+        The number of the list whose turn it is, and how many states are in all lists.
 
     Returns
     -------
@@ -293,69 +306,75 @@ def _take(
     mask = len(lists) - 1
     pops = 0
     while counts[1] > 0 and pops < max_pops:
-        cell = np.int64(lists[counts[0] & mask])
-        if cell < 0:
+        state = np.int64(lists[counts[0] & mask])
+        if state < 0:
             counts[0] += 1
             reached = counts[0] << shift
             if reached >= beyond or (until >= 0 and reached > cost[0, until]):
                 return True
             continue
         pops += 1
-        _unlink(lists, links, counts[0] & mask, cell)
+        _unlink(lists, links, counts[0] & mask, state)
         counts[1] -= 1
+        cell = state if headings is None else state >> 3
         if fused:
-            first = cost[0, cell] + np.int64(np.floor(weights[0] * field[0, cell] + weights[1] * field[1, cell]))
-            second = cost[1, cell] + field[0, cell]
+            first = cost[0, state] + np.int64(np.floor(weights[0] * field[0, cell] + weights[1] * field[1, cell]))
+            second = cost[1, state] + field[0, cell]
         else:
-            first = cost[0, cell] + field[0, cell]
-            second = cost[1, cell] + field[1, cell]
+            first = cost[0, state] + field[0, cell]
+            second = cost[1, state] + field[1, cell]
         for m in range(8):
+            # A state with a heading can only have been reached along it.
+            if headings is not None and m != state & 7:
+                continue
             before = cell - offsets[m]
             if before < 0 or before >= len(legal) or not (legal[before] >> m) & 1:
                 continue
-            total1 = first + step[0, m]
-            total2 = second + step[1, m]
+            into1 = first
+            into2 = second
             if enter is not None:
                 if fused:
-                    total1 += np.int64(np.floor(weights[0] * enter[0, cell, m] + weights[1] * enter[1, cell, m]))
-                    total2 += enter[0, cell, m]
+                    into1 += np.int64(np.floor(weights[0] * enter[0, cell, m] + weights[1] * enter[1, cell, m]))
+                    into2 += enter[0, cell, m]
                 else:
-                    total1 += enter[0, cell, m]
-                    total2 += enter[1, cell, m]
-            known = cost[0, before]
-            if total1 > known or (total1 == known and total2 >= cost[1, before]):
-                continue
+                    into1 += enter[0, cell, m]
+                    into2 += enter[1, cell, m]
+            so_far = 0
             if spent is not None:
                 so_far = spent[0, before]
                 if fused:
                     so_far = np.int64(np.floor(weights[0] * so_far + weights[1] * spent[1, before]))
-                if total1 + so_far >= limit:
+            for h in range(1 if headings is None else 8):
+                origin = before if headings is None else 8 * before + h
+                heading = 8 if headings is None else h
+                total1 = into1 + step[0, heading, m]
+                total2 = into2 + step[1, heading, m]
+                known = cost[0, origin]
+                if total1 > known or (total1 == known and total2 >= cost[1, origin]) or total1 + so_far >= limit:
                     continue
-            elif total1 >= limit:
-                continue
-            cost[0, before] = total1
-            cost[1, before] = total2
-            ahead[before] = m
-            if known < UNREACHABLE and known >> shift == total1 >> shift:
-                continue
-            if known < UNREACHABLE:
-                _unlink(lists, links, (known >> shift) & mask, before)
-            else:
-                counts[1] += 1
-            here = (total1 >> shift) & mask
-            links[0, before] = lists[here]
-            links[1, before] = -1
-            if lists[here] >= 0:
-                links[1, lists[here]] = before
-            lists[here] = before
+                cost[0, origin] = total1
+                cost[1, origin] = total2
+                ahead[origin] = m
+                if known < UNREACHABLE and known >> shift == total1 >> shift:
+                    continue
+                if known < UNREACHABLE:
+                    _unlink(lists, links, (known >> shift) & mask, origin)
+                else:
+                    counts[1] += 1
+                here = (total1 >> shift) & mask
+                links[0, origin] = lists[here]
+                links[1, origin] = -1
+                if lists[here] >= 0:
+                    links[1, lists[here]] = origin
+                lists[here] = origin
     return counts[1] == 0
 
 
 @kernel
-def _unlink(lists, links, number, cell):
-    """Take a cell out of a list."""
-    after = links[0, cell]
-    before = links[1, cell]
+def _unlink(lists, links, number, state):
+    """Take a state out of a list."""
+    after = links[0, state]
+    before = links[1, state]
     if before >= 0:
         links[0, before] = after
     else:
