@@ -63,13 +63,13 @@ def beside_the_exact(folder: Path | None, turns: int) -> None:
                 seconds[way].append(time.process_time() - begin)
         exact, near = found["exact"].F, found["near"].F
         reached = (near[:, None] / exact).max(axis=2).min(axis=0).max() - 1
-        certified = found["near"].certified.epsilon
-        assert reached <= certified + 1e-9 and certified <= EPSILON
+        certificate = found["near"].certified
+        assert certificate is not None and reached <= certificate.epsilon + 1e-9 and certificate.epsilon <= EPSILON
         medians = {way: statistics.median(values) for way, values in seconds.items()}
         ratios.append(medians["near"] / medians["exact"])
         print(
             f"{name}: {medians['exact']:.3f} s exact, {len(exact)} points; {medians['near']:.3f} s near, {len(near)} points, "
-            f"within {100 * certified:.2f} % certified, {100 * reached:.2f} % reached; ratio {ratios[-1]:.2f}",
+            f"within {100 * certificate.epsilon:.2f} % certified, {100 * reached:.2f} % reached; ratio {ratios[-1]:.2f}",
             flush=True,
         )
     print(f"geometric mean of the ratios: {math.exp(statistics.mean(map(math.log, ratios))):.2f}", flush=True)
