@@ -30,7 +30,7 @@ from pymoo_gridpath.operators import (
     path_operators,
     path_sampling,
 )
-from pymoo_gridpath.operators.path_mutation import WAYS
+from pymoo_gridpath.operators.path_mutation import EXPANSIONS_PER_STEP, WAYS
 from pymoo_gridpath.operators.path_terrain import random_weights, terrain_of
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.problems import GridPathProblem, random_dense_grid
@@ -241,10 +241,10 @@ def test_fewer_expansions_change_shorter_stretches():
     X = ReachableSampling()._do(problem, 200, random_state=np.random.default_rng(2))
     paths = problem.decode(X)
     shares = []
-    for most in (1, 20, 200):
+    for most in (1, 20, 100):
         mutation = PathMutation({"shortcut": 1.0}, max_expansions=most)
         changes = mutation._draw(problem, paths.sequences.lengths, np.random.default_rng(3))
-        assert (changes.end - changes.begin).max() == max(most // 10, 1)
+        assert (changes.end - changes.begin).max() == max(most // EXPANSIONS_PER_STEP, 1)
         mutated = mutation._do(problem, X, random_state=np.random.default_rng(3))
         assert is_legal(problem, mutated) and (problem.decode(mutated).length <= paths.length + 1e-9).all()
         shares.append((mutated != X).any(axis=1).mean())
