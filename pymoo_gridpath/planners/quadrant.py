@@ -191,10 +191,10 @@ class QuadrantSelection(Planner):
         ways, _, then = quickest(found.to, *measures, order, self.max_paths, per_cell, per_turn)
         cells, offsets = unfold(found.cells, found.ends, found.to, ways, then, moves.n_cells)
         counts, _, _ = measure(moves.legal, moves.offsets, cells, offsets)
-        # Lists, as numbers of numpy are costly one by one.
-        costs = [cost_of(straight, diagonal, turn, per_cell, per_turn) for straight, diagonal, turn in counts.tolist()]
-        by_time = sorted(range(len(costs)), key=costs.__getitem__)
-        seconds = np.array([costs[k][1] * per_cell + costs[k][2] * per_turn for k in by_time])
+        straight, diagonal, turn = counts.T.copy()
+        time, length, _ = cost_of(straight, diagonal, turn, per_cell, per_turn)
+        by_time = np.lexsort((turn, length, time))
+        seconds = (length * per_cell + turn * per_turn)[by_time]
         return [cells[offsets[k] : offsets[k + 1]] for k in by_time], seconds
 
     def _chosen(self, raw: list[np.ndarray], moves: Moves) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -256,7 +256,8 @@ class RegionOfSight(Planner):
     def _at(self, radius: float, query: _Query) -> _Sighted | None:
         """Return a path between obstacles that are grown by so many cells, or None if there is none."""
         moves, start, goal = query.moves, query.start, query.goal
-        usable = ~query.grid.grow(radius).occupied[moves.box.slices].ravel()
+        # No grid is made of them, which would take a tenth of the time.
+        usable = ~query.grid._grown(radius)[moves.box.slices].ravel()
         ways = [way_to(moves, end, usable) for end in (start, goal)]
         if not all(map(len, ways)):
             return None
