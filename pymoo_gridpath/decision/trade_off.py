@@ -432,7 +432,7 @@ def _check_settings(settings: Mapping | None) -> None:
 def _meta(problem, settings: Mapping | None, band: Any, runs: list[dict]) -> dict:
     meta = provenance.describe_problem(problem)
     meta["settings"]["runs"] = runs
-    if band:
+    if band := band_of(band):
         meta["settings"]["band"] = band
     meta["settings"].update(settings or {})
     seeds = [run["seed"] for run in runs]

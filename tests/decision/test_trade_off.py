@@ -279,3 +279,17 @@ def _empty(problem):
     result = Result()
     result.problem = problem
     return result
+
+
+@pytest.mark.parametrize("band", [np.full((2, 2), 0.1), "wide", -0.1, 0.6, np.nan])
+def test_a_band_that_is_none_is_said_wherever_it_is_given(band):
+    problem = make_problem()
+    X = draw(problem, 20)
+    result = result_of(problem, X)
+    for make in (
+        lambda: TradeOffSet(problem, X, band=band),
+        lambda: TradeOffSet.from_genes(problem, X, band=band),
+        lambda: TradeOffSet.from_results(result, band=band),
+    ):
+        with pytest.raises(GridPathError, match=r"band is [^\n]*expected a share from 0 to 0\.5"):
+            make()
