@@ -42,7 +42,7 @@ PARETO_SECONDS = 2.0
 _ROUNDING = 1e-12
 
 # Genes that are evaluated at a time.
-PART_SIZE = 50_000
+PART_SIZE = 12000
 
 OBSTACLES: tuple[Obstacles, ...] = ("penalty", "constraint", "limit")
 
