@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from peer_libraries.agreement import counts, judge, measured_rule, optimum
 from peer_libraries.base import Peer, markdown
 from peer_libraries.measure import cases_of, dense_case, measure_paths, measure_searches, split
-from peer_libraries.paths import OurAStar, PathPeer, Scipy, edges, path_peers
+from peer_libraries.paths import OurAStar, Scipy, edges, path_peers
 from peer_libraries.searches import search_peers
 from peer_libraries.tables import agreement_table, library_table, path_times, search_table
 
@@ -46,7 +46,7 @@ def there(peer):
     return peer
 
 
-class Absent(PathPeer):
+class Absent(OurAStar):
     package, module, label = "surely-not-there", "surely_not_there", "absent"
 
 

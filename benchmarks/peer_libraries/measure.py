@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -105,7 +106,7 @@ def measure_paths(peers: Sequence[PathPeer], cases: Sequence[Case], repeats: int
             row.seconds[case.name], row.judged[case.name] = [], []
         for k, (start, goal, published) in enumerate(case.queries):
             for row in rows:
-                tries = [seconds_of(lambda row=row: row.peer.query(start, goal)) for _ in range(repeats)]  # noqa: B023
+                tries = [seconds_of(partial(row.peer.query, start, goal)) for _ in range(repeats)]
                 row.seconds[case.name].append(min(seconds for seconds, _ in tries))
                 row.judged[case.name].append(judge(row.peer, moves[row.peer.rule], tries[0][1], start, goal, published))
             say(f"{case.name}: query {k + 1} of {len(case.queries)}")

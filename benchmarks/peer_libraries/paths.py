@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -26,7 +27,7 @@ NO_PATH = np.empty((0, 2), dtype=int)
 NEVER = False
 
 
-class PathPeer(Peer):
+class PathPeer(Peer, ABC):
     """A library's shortest paths on a grid.
 
     Parameters
@@ -51,13 +52,13 @@ class PathPeer(Peer):
     def __init__(self, rule: CornerCutting = True):
         self.rule: CornerCutting = rule
 
+    @abstractmethod
     def set_up(self, grid: OccupancyGrid) -> None:
         """Make what serves all queries on a grid, whose own corner rule is `rule`."""
-        raise NotImplementedError
 
+    @abstractmethod
     def query(self, start: Cell, goal: Cell) -> np.ndarray:
         """Return the cells (x, y) of a path with both ends, shape (n, 2); `NO_PATH` if there is none."""
-        raise NotImplementedError
 
 
 # -- ours ---------------------------------------------------------------------------------------------------------------------
@@ -129,11 +130,11 @@ class GraphPeer(PathPeer):
         self.width, self.n_cells = grid.width, grid.occupied.size
         self.build(*edges(grid))
 
-    def build(self, tails: np.ndarray, heads: np.ndarray, lengths: np.ndarray) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def build(self, tails: np.ndarray, heads: np.ndarray, lengths: np.ndarray) -> None: ...
 
-    def path(self, start: int, goal: int) -> Any:
-        raise NotImplementedError
+    @abstractmethod
+    def path(self, start: int, goal: int) -> Any: ...
 
     def query(self, start, goal):
         path = np.asarray(self.path(start[1] * self.width + start[0], goal[1] * self.width + goal[0]), dtype=int)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import random
+from abc import ABC, abstractmethod
 from importlib import import_module
 from typing import Any
 
@@ -21,7 +22,7 @@ from pymoo_gridpath.algorithms import make_algorithm
 RATE, ETA_CROSSOVER, ETA_MUTATION = 0.9, 10.0, 20.0
 
 
-class SearchPeer(Peer):
+class SearchPeer(Peer, ABC):
     """An NSGA-II for whole numbers within bounds.
 
     Attributes
@@ -34,9 +35,9 @@ class SearchPeer(Peer):
 
     batch = numbers = ""
 
+    @abstractmethod
     def run(self, problem: Any, pop_size: int, n_gen: int, seed: int) -> np.ndarray:
         """Return the genes of the last population, shape (N, n_var), after so many evaluations of a `GridPathProblem`."""
-        raise NotImplementedError
 
 
 def bounds(problem: Any) -> tuple[list[int], list[int]]:

@@ -166,7 +166,10 @@ def better_fronts(
 
     def searched(most=None):
         ends = moves.index(problem.start), moves.index(problem.goal)
-        part = lambda moves, usable: last(search(moves, usable, most))  # noqa: E731
+
+        def part(moves, usable):
+            return last(search(moves, usable, most))
+
         return over_levels(levels, moves, usable, ends, not summed and most is None, meter, part)
 
     if levels:
