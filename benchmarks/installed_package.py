@@ -1,4 +1,4 @@
-"""Install a package with one of each of the six kinds by pip, run its suites, and use each by name wherever names are taken.
+"""Install a package with one of each of the seven kinds by pip, run its suites, and use each by name wherever names are taken.
 
     python benchmarks/installed_package.py
 
@@ -55,6 +55,9 @@ start = [3, 5]
 goal = [56, 34]
 objectives = ["length", { class = "walking_time", summit = 2 }]
 representation = "stops"
+[[problems]]
+suite = { class = "ponds", size = 12, seed = 2 }
+representation = "stops"
 [[algorithms]]
 algorithm = "Patient"
 pop_size = 12
@@ -78,7 +81,10 @@ for one, termination in ((algorithm, ("n_gen", 3)), (planner, None)):
 trails = sys.modules["trails"]
 from pymoo_gridpath.maps import format_of
 operator, reader = algorithm.mating.mutation, format_of("meadow.boxes")
-found = [problem.objectives[1], problem.representation, operator, planner, reader, algorithm]
+from pymoo_gridpath.problems import make_suite
+suite = make_suite("ponds", size=12)
+assert len(suite.problem().pareto_front())
+found = [problem.objectives[1], problem.representation, operator, planner, reader, algorithm, suite]
 print(json.dumps([type(one).__module__ + ":" + type(one).__name__ for one in found]))
 """
 
@@ -91,6 +97,7 @@ plan = store.read_plan()
 records = [store.read(run.key) for run in plan.runs]
 assert {record.status for record in records} == {"finished"}, [record.message for record in records]
 problem, algorithms = plan.problems[0].spec, [item.spec for item in plan.algorithms]
+assert plan.problems[1].label == "ponds-12-2" and plan.problems[1].source.startswith("the suite ponds, which follows")
 first = algorithms[0]
 named = [problem["objectives"][1], problem["representation"], first["operators"]["mutation"], algorithms[1]["algorithm"]]
 print(json.dumps([one["class"] for one in [*named, first["algorithm"]]] + [one["code"] for one in named] + [len(records)]))
@@ -107,7 +114,7 @@ if __name__ == "__main__":
         sys.exit(main(["study", "run", "study.toml", "-o", "dask", "--dask", cluster.scheduler_address]))
 """
 
-KINDS = ("objective", "representation", "operator", "planner", "map format", "algorithm")
+KINDS = ("objective", "representation", "operator", "planner", "map format", "algorithm", "suite")
 
 
 def main() -> None:
@@ -123,7 +130,7 @@ def main() -> None:
         options = ["--quiet", "--disable-pip-version-check", "--no-index", "--no-deps", "--no-build-isolation"]
         run(folder, "pip", "-m", "pip", "install", *options, "--target", "site", "./trails")
 
-        expected = [f"trails:{cls}" for cls in ("WalkingTime", "Stops", "Nudge", "WeightedPaths", "Boxes", "Patient")]
+        expected = [f"trails:{cls}" for cls in ("WalkingTime", "Stops", "Nudge", "WeightedPaths", "Boxes", "Patient", "Ponds")]
         table = {"Python": json.loads(run(folder, "Python", "-c", PYTHON).splitlines()[-1]) == expected}
         query = ["--start", "3,5", "--goal", "56,34", "--representation", "stops", "--objectives", "length,walking_time"]
         for algorithm in (["weighted"], ["Patient", "--operators", "mutation=Nudge", "--pop-size", "12", "--generations", "3"]):
@@ -131,6 +138,8 @@ def main() -> None:
             run(folder, f"command line, {algorithm[0]}", "-m", "pymoo_gridpath.cli", *command)
         planned = json.loads((folder / "planned" / "paths.json").read_text(encoding="utf-8"))
         mutation = planned["settings"]["runs"][0]["operators"]["mutation"]["name"]
+        suite = ["--suite", '{ class = "ponds", size = 12 }', "--objectives", "walking_time,length", "--algorithm", "exact"]
+        run(folder, "command line, ponds", "-m", "pymoo_gridpath.cli", "plan", *suite, "-o", "ponds")
         table["command line"] = mutation == "Nudge" and bool(planned["paths"])
         run(
             folder, "study, 2 processes", "-m", "pymoo_gridpath.cli", "study", "run", "study.toml", "-o", "local", "--jobs", "2"
@@ -139,7 +148,7 @@ def main() -> None:
         named = [expected[0], expected[1], expected[2], expected[3], expected[5]]
         for label, stored in (("study, 2 processes", "local"), ("study, Dask, 2 workers", "dask")):
             found = json.loads(run(folder, f"records of {stored}", "-c", STORED, stored))
-            table[label] = found == [*named, *["trails 1.0"] * 4, 3]
+            table[label] = found == [*named, *["trails 1.0"] * 4, 6]
         suites = run(folder / "trails", "suites", "-m", "pytest", "-q", "-p", "no:cacheprovider").splitlines()[-1]
 
     print(f"\n{'':16}" + "".join(f"{kind:>16}" for kind in KINDS))

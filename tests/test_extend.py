@@ -24,6 +24,7 @@ FAULTS = {
     "TestNudge": ("dx, dy = random_state.integers(", "dx, dy = np.random.default_rng().integers("),
     "TestWeightedPaths": ("found[tuple(path)] = path[::-1]", "found[tuple(path)] = path[::-2]"),
     "TestBoxes": ("x, y, w, h = self._numbers", "y, x, h, w = self._numbers"),
+    "TestPonds": ("ponds[0] = ponds[:, -1] = False", "ponds[:, -1] = True"),
 }
 
 

@@ -6,12 +6,14 @@ from scipy import sparse
 
 from pymoo_gridpath import register
 from pymoo_gridpath.algorithms import reference_directions
-from pymoo_gridpath.errors import MapError
+from pymoo_gridpath.errors import GridPathError, MapError
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.maps import MapFormat, check_size, make_grid, read_string
 from pymoo_gridpath.neighbourhood import HEADINGS
-from pymoo_gridpath.objectives import Objective
+from pymoo_gridpath.objectives import Length, Objective
 from pymoo_gridpath.paths import SequencePaths, Sequences
 from pymoo_gridpath.planners import Planner, settled
+from pymoo_gridpath.problems import Suite
 from pymoo_gridpath.representations import Representation
 
 
@@ -160,3 +162,32 @@ class Boxes(MapFormat):
         if len(words) != len(names) or not all(word.isdecimal() and len(word) < 9 for word in words):
             raise MapError(path, f"line {number} is {line[:40]!r}, expected whole numbers: {', '.join(names)}")
         return map(int, words)
+
+
+@register
+class Ponds(Suite):
+    """A hill with ponds that are drawn at random, from its foot to its foot on the other side."""
+
+    name = "ponds"
+    follows = "follows the definition in the package trails"
+
+    def __init__(self, size=30, seed=1):
+        for key, value, least in (("size", size, 3), ("seed", seed, 0)):
+            if type(value) is not int or not least <= value < 1000:
+                raise GridPathError(f"{key} is {value!r}, expected a whole number from {least} to 999")
+        self.size, self.seed = size, seed
+
+    @property
+    def label(self):
+        return f"ponds-{self.size}-{self.seed}"
+
+    @property
+    def query(self):
+        ponds = np.random.default_rng(self.seed).random((self.size, self.size)) < 0.2
+        # One way is always dry.
+        ponds[0] = ponds[:, -1] = False
+        return OccupancyGrid(ponds, name=self.label), (0, 0), (self.size - 1, self.size - 1)
+
+    @property
+    def objectives(self):
+        return Length(), WalkingTime(20.0)

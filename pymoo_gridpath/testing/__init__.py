@@ -10,7 +10,7 @@ import pytest
 pytest.register_assert_rewrite(
     *(
         f"pymoo_gridpath.testing.{name}"
-        for name in ("algorithms", "maps", "objectives", "operators", "planners", "representations")
+        for name in ("algorithms", "maps", "objectives", "operators", "planners", "representations", "suites")
     )
 )
 
@@ -20,5 +20,14 @@ from pymoo_gridpath.testing.objectives import ObjectiveSuite  # noqa: E402
 from pymoo_gridpath.testing.operators import OperatorSuite  # noqa: E402
 from pymoo_gridpath.testing.planners import PlannerSuite  # noqa: E402
 from pymoo_gridpath.testing.representations import RepresentationSuite  # noqa: E402
+from pymoo_gridpath.testing.suites import SuiteSuite  # noqa: E402
 
-__all__ = ["AlgorithmSuite", "MapFormatSuite", "ObjectiveSuite", "OperatorSuite", "PlannerSuite", "RepresentationSuite"]
+__all__ = [
+    "AlgorithmSuite",
+    "MapFormatSuite",
+    "ObjectiveSuite",
+    "OperatorSuite",
+    "PlannerSuite",
+    "RepresentationSuite",
+    "SuiteSuite",
+]

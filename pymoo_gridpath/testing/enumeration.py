@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import heapq
+import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pymoo_gridpath.grid import Cell, OccupancyGrid
+from pymoo_gridpath.objectives import Objective
 
 #: The step (dx, dy) of each heading.
 STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
@@ -116,3 +119,63 @@ def non_dominated(rows: Iterable[tuple[float, ...]]) -> np.ndarray:
         if not any(all(a <= b for a, b in zip(better, row, strict=True)) for better in front):
             front.append(row)
     return np.array(front, dtype=float)
+
+
+def label_front(
+    grid: OccupancyGrid, start: Cell, goal: Cell, objectives: Sequence[Objective], headings: Iterable[int] = range(8)
+) -> np.ndarray:
+    """Return the front of all paths, label by label in lexicographic order (Martins, 1984), shape (N, n_obj), ascending.
+
+    Objectives add up costs that they name, or go by the worst cell of a path. Costs that differ by rounding alone count as the
+    same. Some hundred cells take a second.
+    """
+    steps, turning = steps_of(grid, headings), any(one.turn_cost for one in objectives)
+    costs = [_cost_of(one, grid) for one in objectives]
+    first = tuple(cost(None, None, start) for cost in costs)
+    # Of each cell, with the heading where it matters, the labels from which paths go on.
+    settled: dict[Any, list[tuple[float, ...]]] = {}
+    count = itertools.count()
+    queue: list[Any] = [(first, next(count), start, None)]
+    while queue:
+        label, _, cell, heading = heapq.heappop(queue)
+        kept = settled.setdefault((cell, heading if turning and cell != goal else None), [])
+        if _is_behind(label, kept):
+            continue
+        kept.append(label)
+        if cell != goal:
+            for m, after in steps[cell]:
+                further = tuple(cost(label[k], (heading, m), after) for k, cost in enumerate(costs))
+                if not _is_behind(further, settled.get((after, m if turning and after != goal else None), ())):
+                    heapq.heappush(queue, (further, next(count), after, m))
+    found = sorted(settled.get((goal, None), []))
+    # Rounding may have put what is worse first.
+    front = [row for k, row in enumerate(found) if not _is_behind(row, found[k + 1 :])]
+    return np.array(front, dtype=float).reshape(-1, len(objectives))
+
+
+def _cost_of(objective: Objective, grid: OccupancyGrid):
+    """Return what a step adds to the cost of a path: from its cost so far, the headings before and of the step, and its end."""
+    field, moves = objective.field(grid), objective.moves(grid)
+    costs = None if field is None else np.asarray(field, dtype=float).tolist()
+    of_moves: Any = None if moves is None else np.asarray(moves, dtype=float).tolist()
+    by_cell = np.ndim(moves) == 3 if moves is not None else False
+
+    def cost(before, headings, cell):
+        x, y = cell
+        entered = 0.0 if costs is None else costs[y][x]
+        if objective.bottleneck:
+            entered = -entered if objective.maximise else entered
+            return entered if before is None else max(before, entered)
+        if headings is None:
+            return entered
+        _, m = headings
+        if of_moves is not None:
+            entered += of_moves[m][y][x] if by_cell else of_moves[m % 2]
+        return before + entered + objective.turn_cost * turn_between(*headings)
+
+    return cost
+
+
+def _is_behind(label: tuple[float, ...], others: Iterable[tuple[float, ...]]) -> bool:
+    """Whether one of some labels is nowhere worse, but for rounding."""
+    return any(all(a <= b + 1e-9 * (1.0 + abs(b)) for a, b in zip(other, label, strict=True)) for other in others)

@@ -20,7 +20,8 @@ class Suite(ABC):
     """One of the problems that a publication defines: a map, a query, and what paths are scored by.
 
     A suite of your own sets `name` and `follows`, keeps the arguments of its constructor as attributes of their names, and says
-    what `query` and `objectives` are. `pymoo_gridpath.registry.register` makes it known by its name.
+    what `query` and `objectives` are. `pymoo_gridpath.registry.register` makes it known by its name, and
+    `pymoo_gridpath.testing.SuiteSuite` tests that it does all that it must.
 
     Attributes
     ----------
@@ -42,7 +43,7 @@ class Suite(ABC):
     @property
     @abstractmethod
     def label(self) -> str:
-        """What tables call the problem."""
+        """What tables call the problem, unlike the others of the suite."""
 
     @property
     @abstractmethod

@@ -54,7 +54,7 @@ class SmallEnvironments(_Environment):
 
     @property
     def label(self):
-        return self.environment
+        return f"{self.environment}, corners cut" if self.corner_cutting else self.environment
 
     @functools.cached_property
     def query(self):

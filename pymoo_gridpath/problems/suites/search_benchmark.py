@@ -70,7 +70,8 @@ class RandomCostGrid(Suite):
 
     @property
     def label(self):
-        return f"random-cost-{self.width}x{self.height}-{self.seed}"
+        costs = "" if self.n_obj == 2 else f"-{self.n_obj}-costs"
+        return f"random-cost-{self.width}x{self.height}-{self.seed}{costs}"
 
     @functools.cached_property
     def query(self):
@@ -148,7 +149,7 @@ class GuardsGrid(Suite):
             grid = load_map(self.map, moves=8, corner_cutting=False)
             if not (self.start and self.goal):
                 known = query_of(self.map)
-        return grid, *ends_of(grid, known, self.start, self.goal)
+        return grid, *grid.check_query(*ends_of(grid, known, self.start, self.goal))
 
     @functools.cached_property
     def objectives(self):
