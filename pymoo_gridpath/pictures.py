@@ -29,12 +29,14 @@ PALETTE = {
     "flattest": "#7A7A00",
 }
 OCCUPIED, GROWN, UNKNOWN, OTHERS, INK = "#3b3f45", "#8fa3bf", "#b9bec6", "#8a8f98", "#111418"
+# Unknown cells that count as occupied.
+UNSEEN = "#6f757d"
 
 # The longer side of a picture is at most so many dots, and a cell is no larger than this.
 _MOST_DOTS, _MOST_CELL = 320, 10
 
 # On a terminal each of these covers those before it, where a character stands for several cells.
-_FREE, _MAYBE, _NEAR, _BLOCKED, _OTHER, _FIRST = range(6)
+_FREE, _MAYBE, _NEAR, _UNSEEN, _BLOCKED, _OTHER, _FIRST = range(7)
 
 
 class Line(NamedTuple):
@@ -52,6 +54,7 @@ class Scene(NamedTuple):
     ----------
     occupied : numpy.ndarray of bool
     unknown : numpy.ndarray of bool, optional
+        Of these, too, some may be occupied.
     others : sequence of numpy.ndarray
         Cells of paths that stay in the background.
     lines : sequence of Line
@@ -95,7 +98,7 @@ def png(scene: Scene) -> bytes:
     size = 1 if shrink > 1 else max(1, min(_MOST_CELL, _MOST_DOTS // max(height, width)))
     codes = _shrunk(_codes(scene), shrink)[::-1].repeat(size, axis=0).repeat(size, axis=1)
     picture = Image.fromarray(codes, mode="P")
-    colors = ["#ffffff", UNKNOWN, GROWN, OCCUPIED, OTHERS, INK, *(line.color for line in scene.lines)]
+    colors = ["#ffffff", UNKNOWN, GROWN, UNSEEN, OCCUPIED, OTHERS, INK, *(line.color for line in scene.lines)]
     picture.putpalette([part for color in colors for part in bytes.fromhex(color[1:])])
     draw = ImageDraw.Draw(picture)
 
@@ -152,9 +155,9 @@ def _escape(text: object) -> str:
 
 def _codes(scene: Scene) -> np.ndarray:
     codes = np.full(scene.occupied.shape, _FREE, dtype=np.uint8)
-    if scene.unknown is not None:
-        codes[scene.unknown] = _MAYBE
     codes[scene.occupied] = _BLOCKED
+    if scene.unknown is not None:
+        codes[scene.unknown] = np.where(scene.occupied[scene.unknown], _UNSEEN, _MAYBE)
     if scene.grown is not None:
         codes[scene.grown] = _NEAR
     return codes
@@ -172,7 +175,7 @@ def _shrunk(codes: np.ndarray, factor: int) -> np.ndarray:
 # -- half blocks for terminals --------------------------------------------------------------------------------------------
 
 # Of the 256 colours that terminals know, the nearest.
-_TERMINAL = {"free": 255, "unknown": 250, "grown": 110, "occupied": 238, "others": 245, "start": 16, "goal": 16}
+_TERMINAL = {"free": 255, "unknown": 250, "grown": 110, "unseen": 243, "occupied": 238, "others": 245, "start": 16, "goal": 16}
 _MARKS = {"upper": "\u2580", "lower": "\u2584", "both": "\u2588", "path": "\u2022"}
 
 
@@ -220,7 +223,7 @@ def half_blocks(scene: Scene, columns: int, lines: int, colors: bool = True) -> 
     pairs = zip(small[::2], small[1::2], strict=True)
     if not colors:
         return "\n".join("".join(map(_plain_mark, *pair)).rstrip() for pair in pairs)
-    palette = [_TERMINAL[name] for name in ("free", "unknown", "grown", "occupied", "others")]
+    palette = [_TERMINAL[name] for name in ("free", "unknown", "grown", "unseen", "occupied", "others")]
     palette += [*(nearest_color(line.color) for line in scene.lines), _TERMINAL["start"]]
     text = (
         "".join(f"\x1b[38;5;{palette[a]};48;5;{palette[b]}m{_MARKS['upper']}" for a, b in zip(*pair, strict=True))

@@ -15,7 +15,9 @@ from pymoo_gridpath import GridPathProblem, OccupancyGrid, TradeOffSet, pictures
 from pymoo_gridpath.cli.maps import show
 from pymoo_gridpath.decision import PathRecord
 from pymoo_gridpath.decision.drawn import scene_of
+from pymoo_gridpath.grid import Box
 from pymoo_gridpath.pictures import Line, Scene
+from pymoo_gridpath.plotting import plot_map
 
 
 def dots_of(picture):
@@ -239,3 +241,39 @@ def test_a_terminal_gets_the_map_in_its_size(monkeypatch, plain):
     assert ("\x1b[" in text) != plain and ("shortest" in text) != plain
     if plain:
         assert all(len(line) <= 10 for line in text.splitlines()) and "\u2022" in text
+
+
+def test_unknown_cells_are_told_from_obstacles_and_from_free_cells():
+    unknown = np.zeros((3, 5), dtype=bool)
+    unknown[0, 4] = unknown[2, 0] = True
+    grid = OccupancyGrid([[0, 0, 0, 0, 1], [0, 0, 1, 0, 0], [0, 0, 0, 0, 0]], 0.5, unknown=unknown)
+    expected = {(4, 0): pictures.UNSEEN, (2, 1): pictures.OCCUPIED, (0, 2): pictures.UNKNOWN, (3, 2): "#ffffff"}
+    for thing in (grid, GridPathProblem(grid, (0, 0), (1, 2))):
+        picture = Image.open(io.BytesIO(thing._repr_png_())).convert("RGB")
+        size = picture.width // 5
+        for (x, y), color in expected.items():
+            assert picture.getpixel((int((x + 0.5) * size), int((2.5 - y) * size))) == rgb(color)
+    assert "2 cells, 13.3%, taken as free" in Tags(grid._repr_html_()).text
+    assert "unknown" not in Tags(OccupancyGrid(grid.occupied)._repr_html_()).text
+    scene = pictures.Scene(grid.occupied, grid.unknown)
+    assert len(set(re.findall(r"[34]8;5;(\d+)", pictures.half_blocks(scene, 10, 10)))) == 4
+    # Without colours, what counts as occupied is.
+    assert pictures.half_blocks(scene, 10, 10, colors=False).splitlines()[1][4] == "\u2580"
+
+
+def test_figures_tell_unknown_cells_that_count_as_occupied():
+    unknown = np.zeros((2, 3), dtype=bool)
+    unknown[0, 1:] = True
+    grid = OccupancyGrid([[1, 1, 0], [0, 0, 0]], unknown=unknown)
+    ax = plot_map(grid, potential=False)
+    colors = (255 * np.asarray(ax.images[0].get_array())[0]).round().astype(int).tolist()
+    assert colors[:2] == [list(rgb(pictures.OCCUPIED)), list(rgb(pictures.UNSEEN))] and colors[2] not in colors[:2]
+    assert "unknown, taken as occupied" in ax.get_legend_handles_labels()[1]
+    assert "unknown, taken as occupied" not in plot_map(OccupancyGrid(grid.occupied)).get_legend_handles_labels()[1]
+
+
+def test_a_part_of_a_grid_knows_which_of_its_cells_are_unknown():
+    unknown = random_cells(5, 6, seed=3)
+    for resolution in (None, 0.5):
+        part = OccupancyGrid(random_cells(5, 6), resolution, unknown=unknown).crop(Box(1, 2, 5, 4))
+        np.testing.assert_array_equal(part.unknown, unknown[2:4, 1:5])

@@ -12,11 +12,12 @@ import numpy as np
 
 from pymoo_gridpath import pictures
 from pymoo_gridpath.cli.arguments import EXIT_OK
-from pymoo_gridpath.errors import counted, visible
+from pymoo_gridpath.errors import visible
 from pymoo_gridpath.neighbourhood import MOVES, ONE_SIDE, steps_in_words
 
 if TYPE_CHECKING:
     from pymoo_gridpath.grid import OccupancyGrid
+from pymoo_gridpath.grid.picture import scene_of, unknown_of
 
 
 def add_map_commands(commands) -> None:
@@ -64,15 +65,6 @@ def load(name: str, arguments) -> OccupancyGrid:
     return load_map(name, **{key: getattr(arguments, key) for key in _READING})
 
 
-def unknown_of(grid: OccupancyGrid) -> str | None:
-    """Return in words how many cells of a map as read are unknown and what they count as; None if its kind knows none."""
-    if grid.unknown is None:
-        return None
-    n = int(np.count_nonzero(grid.unknown))
-    meaning = ("occupied" if (grid.occupied | ~grid.unknown).all() else "free") if n else ""
-    return counted(n, "cell") + (f", {n / grid.unknown.size:.1%}, taken as {meaning}" if n else "")
-
-
 def _maps(arguments) -> int:
     """List the shipped maps with the query that `plan` solves on each by default."""
     from pymoo_gridpath.maps import load_map, shipped_maps
@@ -105,7 +97,7 @@ def _info(arguments) -> int:
         rows["query"] = f"from {_text(known.start)} to {_text(known.goal)}, robot radius {known.radius:g} m"
     for key, value in rows.items():
         print(f"{key:<13} {visible(value)}")
-    show(pictures.Scene(grid.occupied, grid.unknown))
+    show(scene_of(grid))
     return EXIT_OK
 
 

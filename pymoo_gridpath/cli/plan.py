@@ -20,12 +20,13 @@ from pymoo_gridpath.cli.arguments import (
     share,
 )
 from pymoo_gridpath.cli.ground import add_ground, given_ground, ground_of
-from pymoo_gridpath.cli.maps import add_reading, load, show, unknown_of
+from pymoo_gridpath.cli.maps import add_reading, load, show
 from pymoo_gridpath.cli.query import add_query, ends, grown
 from pymoo_gridpath.cli.resume import add_resume, read_stored, said, write_populations
 from pymoo_gridpath.cli.suites import add_suite, suite_problem
 from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
+from pymoo_gridpath.grid.picture import unknown_of
 from pymoo_gridpath.interrupt import StopOnCtrlC
 from pymoo_gridpath.progress import Progress, say
 

@@ -82,6 +82,8 @@ def _check(arguments) -> int:
     only_references = sum(run.algorithm is None for run in plan.runs)
     measured = f", {only_references} of them exact fronts to measure against" if only_references else ""
     print(f"runs: {len(plan.runs):,}{measured}", flush=True)
+    for line in _without_exact_front(plan):
+        print(line, flush=True)
     due = plan.runs
     folder = _results(arguments)
     if os.path.isdir(folder):
@@ -145,6 +147,19 @@ def _counts(study, plan) -> str:
     return ", ".join(
         (counted(len(plan.problems), "problem"), counted(len(plan.algorithms), "algorithm"), counted(len(study.seeds), "seed"))
     )
+
+
+def _without_exact_front(plan) -> list[str]:
+    """Return a sentence for each reason why problems have no exact front to measure against."""
+    labels: dict[str, list[str]] = {}
+    for problem in plan.problems:
+        if problem.no_reference:
+            labels.setdefault(problem.no_reference, []).append(visible(problem.label))
+    lines = []
+    for why, found in labels.items():
+        others = f" and {counted(len(found) - 1, 'other problem')}" if found[1:] else ""
+        lines.append(f"no exact front of {found[0]}{others}: {why}; the merged front of all runs stands in")
+    return lines
 
 
 def _time(found, n_runs: int, jobs: int) -> str:

@@ -189,8 +189,9 @@ class _One(NamedTuple):
     enter: np.ndarray | None = None
 
 
-def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.ndarray) -> _One:
-    name, turn = objective.name, objective.turn_cost
+def check_adds_up(objective: Objective) -> None:
+    """Raise a CapabilityError unless an objective is a sum of costs along a path, to be minimised."""
+    name = objective.name
     if objective.combine != "sum":
         raise CapabilityError(
             f"the objective {name!r} is the {objective.combine} of costs along a path, to be "
@@ -202,12 +203,23 @@ def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.n
             f"the objective {name!r} is a sum along a path that is to be maximised, and no exact front is known of it; "
             f"expected sums to be minimised"
         )
+    if not objective.additive:
+        raise _names_none(objective)
+
+
+def _names_none(objective: Objective) -> CapabilityError:
+    return CapabilityError(
+        f"the objective {objective.name!r} has no field, costs of moves or turn_cost, so it does not add up along a path and "
+        f"no exact front is known; expected length, turn, or objectives that are sums of such costs"
+    )
+
+
+def _costs(objective: Objective, grid: OccupancyGrid, moves: Moves, usable: np.ndarray) -> _One:
+    check_adds_up(objective)
+    name, turn = objective.name, objective.turn_cost
     cells, steps = field_of(objective, grid, moves.box), moves_of(objective, grid)
     if cells is None and steps is None and not turn:
-        raise CapabilityError(
-            f"the objective {name!r} has no field, costs of moves or turn_cost, so it does not add up along a path and no "
-            f"exact front is known; expected length, turn, or objectives that are sums of such costs"
-        )
+        raise _names_none(objective)
     pair = np.array(steps if isinstance(steps, tuple) else (0.0, 0.0))
     nothing = np.zeros(moves.n_cells, dtype=np.int64)
     if cells is None and not isinstance(steps, np.ndarray):

@@ -11,9 +11,10 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.compiled import working_seconds
 from pymoo_gridpath.errors import CapabilityError, GridPathError, counted
 from pymoo_gridpath.exact.budget import Budget, Meter
+from pymoo_gridpath.exact.costs import check_adds_up, integer_costs
 from pymoo_gridpath.exact.levels import Known, cell_levels, over_levels
 from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, together
-from pymoo_gridpath.exact.parts import Part, parts_of, refuse
+from pymoo_gridpath.exact.parts import Part, check_detours, parts_of, refuse
 from pymoo_gridpath.exact.steps import Steps, last, mapped
 from pymoo_gridpath.exact.timed import exact_timed_front
 from pymoo_gridpath.objectives import Length, Objective
@@ -120,6 +121,31 @@ def exact_front(
     return last(better_fronts(problem, budget, epsilon=epsilon, share=share))
 
 
+def check_front_is_known(problem) -> None:
+    """Raise a CapabilityError if no search finds the exact front of a problem, whatever its budget."""
+    coding = representation_of(problem)
+    if not coding.codes_all:
+        raise CapabilityError(
+            f"the {coding.name} representation does not code every path, expected one that does for an exact front, such as "
+            f"'integer' or 'cells'"
+        )
+    if coding.timed:
+        return
+    numbers, worst = _kinds(problem)
+    if len(numbers) > 3:
+        besides = " besides those of which the worst cell decides" if worst else ""
+        raise CapabilityError(f"the problem has {len(numbers)} objectives{besides}, expected at most 3 for an exact front")
+    moves, summed = coding.moves, [problem.objectives[k] for k in numbers]
+    if moves.n_cells > _MOST_CELLS:
+        n_cells = np.count_nonzero(moves.legal)
+        if n_cells > _MOST_CELLS:
+            raise CapabilityError(f"paths may visit {n_cells:,} cells, expected at most {_MOST_CELLS:,} for an exact front")
+    for objective in summed:
+        check_adds_up(objective)
+    if summed and not coding.codes_detours:
+        check_detours(problem, summed, integer_costs(summed, problem.grid, moves))
+
+
 def better_fronts(
     problem, budget: Budget | None = None, *, epsilon: float | None = None, share: float | None = None
 ) -> Steps[ExactResult, ExactResult]:
@@ -129,25 +155,13 @@ def better_fronts(
     parts of the front. Nothing is handed over of one, of paths in time, nor where the worst cell decides, since that takes many
     searches. A result on the way is no ``success``, and paths that do not fit into a row are left out.
     """
-    moves = representation_of(problem).moves
     checks.instance("budget", budget, Budget, optional=True)
     allowance = Allowance(epsilon, share)
-    if not problem.representation.codes_all:
-        raise CapabilityError(
-            f"the {problem.representation.name} representation does not code every path, expected one that does for an exact "
-            f"front, such as 'integer' or 'cells'"
-        )
+    check_front_is_known(problem)
     if problem.representation.timed:
         refuse(allowance, "obstacles that move")
         return _front_in_time(problem, budget)
-    summed, worst = _kinds(problem)
-    if len(summed) > 3:
-        besides = " besides those of which the worst cell decides" if worst else ""
-        raise CapabilityError(f"the problem has {len(summed)} objectives{besides}, expected at most 3 for an exact front")
-    if moves.n_cells > _MOST_CELLS:
-        n_cells = np.count_nonzero(moves.legal)
-        if n_cells > _MOST_CELLS:
-            raise CapabilityError(f"paths may visit {n_cells:,} cells, expected at most {_MOST_CELLS:,} for an exact front")
+    moves, (summed, worst) = problem.representation.moves, _kinds(problem)
     if len(summed) == 3:
         refuse(allowance, "three objectives that add up")
     if problem.obstacles == "limit":

@@ -72,7 +72,7 @@ def parts_of(
     the way the first search hands over what it has found.
     """
     costs = integer_costs(objectives, problem.grid, moves, usable)
-    _check_detours(problem, objectives, costs)
+    check_detours(problem, objectives, costs)
     if costs.rounded.any():
         name = objectives[int(np.flatnonzero(costs.rounded)[0])].name
         refuse(allowance, f"the objective {name!r}, whose costs have to be rounded")
@@ -110,7 +110,7 @@ def parts_of(
     return parts
 
 
-def _check_detours(problem, objectives: list[Objective], costs: Costs) -> None:
+def check_detours(problem, objectives: list[Objective], costs: Costs) -> None:
     """Refuse costs by which a detour may be the better way, if the representation codes none."""
     if problem.representation.codes_detours or np.array_equal(costs.direct, DIRECT):
         return

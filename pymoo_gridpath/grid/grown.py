@@ -13,8 +13,8 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import GridError, GridPathWarning
 from pymoo_gridpath.grid.arguments import Footprint, as_footprint
-from pymoo_gridpath.grid.cells import Cells
 from pymoo_gridpath.grid.inflation import disc_of, grown_by
+from pymoo_gridpath.grid.placed import PlacedCells
 
 
 class Growth(NamedTuple):
@@ -25,14 +25,10 @@ class Growth(NamedTuple):
     footprint: Footprint | None
 
 
-class GrownCells(Cells):
-    """What an `OccupancyGrid` knows of the obstacles that there were before they grew; it has a resolution and an origin."""
+class GrownCells(PlacedCells):
+    """What an `OccupancyGrid` knows of the obstacles that there were before they grew."""
 
-    resolution: Any
-    origin: Any
-    name: Any
     replace: Any
-    check_resolution: Any
 
     _growth: Growth | None = None
 

@@ -14,15 +14,13 @@ from scipy.sparse import csgraph
 
 from pymoo_gridpath import checks, pictures
 from pymoo_gridpath.checks import shown
-from pymoo_gridpath.errors import GridError, UnreachableError, visible
-from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_pose, as_resolution, pairs
+from pymoo_gridpath.errors import GridError, UnreachableError
+from pymoo_gridpath.grid.arguments import Cell, CornerCutting, as_cell, as_cells, as_resolution
 from pymoo_gridpath.grid.box import Box
 from pymoo_gridpath.grid.grown import GrownCells, Growth
 from pymoo_gridpath.grid.occupancy_values import blocks_of, cells_of_occupancy, decimal_of
+from pymoo_gridpath.grid.picture import html_of, scene_of, size_of
 from pymoo_gridpath.neighbourhood import steps_in_words
-
-# Numbers of cells that a float holds without gaps, with one bit to spare.
-_FARTHEST = 2.0**52
 
 # Grids of fewer cells are worked on whole, and so are those of which a start can reach more than this share: a part would
 # save nothing.
@@ -84,14 +82,7 @@ class OccupancyGrid(GrownCells):
         unknown: ArrayLike | None = None,
         moves: int = 8,
     ):
-        super().__init__(occupied, corner_cutting, unknown, moves)
-        self._resolution = as_resolution(resolution)
-        self._origin = as_pose(origin)
-        if self._resolution is None and any(self._origin):
-            raise GridError(f"origin is {shown(origin)}, in metres, and no resolution is given, expected both or neither")
-        if not math.isfinite((self._resolution or 0.0) * max(self.shape) + max(abs(v) for v in self._origin)):
-            raise GridError(f"resolution {resolution} and origin {origin!r} put the map beyond what numbers can hold")
-        self._name = checks.text("name", name, GridError)
+        super().__init__(occupied, resolution, origin, corner_cutting, name, unknown, moves)
 
     @classmethod
     def from_occupancy(
@@ -149,21 +140,6 @@ class OccupancyGrid(GrownCells):
 
     # -- what it is ---------------------------------------------------------------------------------------------------
 
-    @property
-    def resolution(self) -> float | None:
-        """Side of a cell in metres; None of a map in cells."""
-        return self._resolution
-
-    @property
-    def origin(self) -> tuple[float, ...]:
-        """Pose (x, y, yaw) of the bottom-left corner of cell (0, 0), in metres and radians."""
-        return self._origin
-
-    @property
-    def name(self) -> str:
-        """What figures and files call this grid."""
-        return self._name
-
     def replace(self, **changes) -> OccupancyGrid:
         """Return a copy in which the named constructor arguments are changed.
 
@@ -207,25 +183,15 @@ class OccupancyGrid(GrownCells):
 
     def __repr__(self) -> str:
         return (
-            f"<OccupancyGrid {self._name!r}: {self.width} x {self.height} cells{self._of_metres}, "
-            f"{self.n_occupied} occupied, {steps_in_words(self._moves, self._corner_cutting)}>"
+            f"<OccupancyGrid {self._name!r}: {size_of(self)}, {self.n_occupied} occupied, "
+            f"{steps_in_words(self._moves, self._corner_cutting)}>"
         )
 
-    @property
-    def _of_metres(self) -> str:
-        return "" if self._resolution is None else f" of {self._resolution:g} m"
-
     def _repr_png_(self) -> bytes:
-        return pictures.png(pictures.Scene(self._occupied, self._unknown, grown=self.grown_cells))
+        return pictures.png(scene_of(self))
 
     def _repr_html_(self) -> str:
-        rows = {
-            "cells": f"{self.width} x {self.height}{self._of_metres}",
-            "occupied": f"{self.n_occupied} ({self.n_occupied / self._occupied.size:.0%})",
-            **({} if self.original is self else {"of these grown": f"{self.n_occupied - self.original.n_occupied}"}),
-            "steps": steps_in_words(self._moves, self._corner_cutting),
-        }
-        return pictures.page(self._repr_png_(), visible(self._name), rows, "map, occupied cells dark")
+        return html_of(self)
 
     # -- cells --------------------------------------------------------------------------------------------------------
 
@@ -318,78 +284,6 @@ class OccupancyGrid(GrownCells):
             )
         return start, goal
 
-    def check_resolution(self, need: str) -> float:
-        """Return the side of a cell in metres, if the map states it.
-
-        Parameters
-        ----------
-        need : str
-            What needs it, as the error message names it, for instance ``"a radius in metres"``.
-
-        Raises
-        ------
-        GridError
-            If the map is one in cells.
-        """
-        if self._resolution is None:
-            raise GridError(
-                f"the grid {shown(self._name)} is in cells, and {checks.text('need', need, GridError)} needs their size; "
-                "expected a map that states its resolution, or one given in metres per cell: resolution=0.05, or "
-                "--resolution 0.05"
-            )
-        return self._resolution
-
-    def to_metres(self, cells: ArrayLike) -> np.ndarray:
-        """Return the centres of cells in the map's frame.
-
-        Parameters
-        ----------
-        cells : array_like, shape (..., 2)
-            Cells (x, y).
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., 2)
-            Metres.
-
-        Raises
-        ------
-        GridError
-            If the cells are no pairs of numbers, or the map is one in cells.
-        """
-        resolution = self.check_resolution("a point in metres")
-        local = (pairs("cells", cells, "cells (x, y)").astype(float) + 0.5) * resolution
-        x0, y0, yaw = self._origin
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        return local @ np.array([[cos, sin], [-sin, cos]]) + np.array([x0, y0])
-
-    def to_cells(self, points: ArrayLike) -> np.ndarray:
-        """Return the cells that hold points given in metres; the inverse of `to_metres` (cells may lie outside the grid).
-
-        Parameters
-        ----------
-        points : array_like, shape (..., 2)
-            Metres.
-
-        Returns
-        -------
-        numpy.ndarray of int, shape (..., 2)
-
-        Raises
-        ------
-        GridError
-            If the points are no pairs of finite numbers, or lie more than 2**52 cells away; or if the map is one in cells.
-        """
-        resolution = self.check_resolution("a point in metres")
-        x0, y0, yaw = self._origin
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        local = (pairs("points", points, "points (x, y) in metres") - np.array([x0, y0])) @ np.array([[cos, -sin], [sin, cos]])
-        with np.errstate(over="ignore"):
-            cells = np.floor(local / resolution)
-        if not (np.abs(cells) <= _FARTHEST).all():
-            raise GridError("points lie further away than cells can be counted, expected metres in the frame of the map")
-        return cells.astype(int)
-
     # -- the whole grid -----------------------------------------------------------------------------------------------
 
     def box_of(self, start: Sequence[int]) -> Box:
@@ -419,13 +313,16 @@ class OccupancyGrid(GrownCells):
         box = check_box(box, self)
         if box == self.whole:
             return self
-        occupied = self._occupied[box.slices]
+        cells = {
+            "occupied": self._occupied[box.slices],
+            "unknown": None if self._unknown is None else self._unknown[box.slices],
+        }
         if self._resolution is None:
-            return self._with_growth(self.replace(occupied=occupied), lambda original: original.crop(box))
+            return self._with_growth(self.replace(**cells), lambda original: original.crop(box))
         x0, y0, yaw = self._origin
         dx, dy = box.x0 * self._resolution, box.y0 * self._resolution
         cos, sin = math.cos(yaw), math.sin(yaw)
-        made = self.replace(occupied=occupied, origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw))
+        made = self.replace(**cells, origin=(x0 + cos * dx - sin * dy, y0 + sin * dx + cos * dy, yaw))
         return self._with_growth(made, lambda original: original.crop(box))
 
     def downsample(self, factor: int) -> OccupancyGrid:

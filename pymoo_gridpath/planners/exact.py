@@ -13,7 +13,7 @@ from pymoo.core.population import Population
 from pymoo_gridpath.compiled import is_ctrl_c
 from pymoo_gridpath.exact import Budget, ExactResult
 from pymoo_gridpath.exact.budget import Meter
-from pymoo_gridpath.exact.front import better_fronts
+from pymoo_gridpath.exact.front import better_fronts, check_front_is_known
 from pymoo_gridpath.exact.nearness import Allowance
 from pymoo_gridpath.exact.steps import handed_over
 from pymoo_gridpath.interrupt import StopOnCtrlC, ctrl_c_raises
@@ -106,6 +106,11 @@ class ExactFront(Planner):
         self.budget = Budget(max_seconds, max_labels, max_memory, watch)
         self.allowance = Allowance(epsilon, share)
         self._ctrl_c: StopOnCtrlC | None = None
+
+    @classmethod
+    def refuse(cls, problem) -> None:
+        super().refuse(problem)
+        check_front_is_known(problem)
 
     def plan(self, problem) -> Plan:
         *_, plan = self.plans(problem)

@@ -179,6 +179,10 @@ def _draw_cells(ax: Axes, grid: OccupancyGrid, field: np.ndarray | None, units: 
     share = np.zeros(grid.shape) if field is None or top <= 0 else np.clip(field / top, 0.0, 1.0)
     image = colors(share)[..., :3]
     image[grid.occupied] = to_rgb(style.OCCUPIED)
+    unseen = None if grid.unknown is None else grid.unknown & grid.occupied
+    if unseen is not None and unseen.any():
+        image[unseen] = to_rgb(style.UNSEEN)
+        ax.scatter([], [], marker="s", color=style.UNSEEN, label="unknown, taken as occupied")
     near = grid.grown_cells
     if near is not None and near.any():
         image[near] = to_rgb(style.GROWN)

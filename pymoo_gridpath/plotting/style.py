@@ -21,6 +21,7 @@ from pymoo_gridpath.pictures import GROWN as GROWN
 from pymoo_gridpath.pictures import INK, PALETTE
 from pymoo_gridpath.pictures import OCCUPIED as OCCUPIED
 from pymoo_gridpath.pictures import OTHERS as OTHERS
+from pymoo_gridpath.pictures import UNSEEN as UNSEEN
 
 Units = Literal["cells", "m"]
 

@@ -16,6 +16,7 @@ from pymoo_gridpath.exact import Budget, ExactResult, exact_front
 from pymoo_gridpath.exact.nearness import Allowance
 from pymoo_gridpath.fields import BoxedField
 from pymoo_gridpath.grid import Box, Cell, OccupancyGrid, check_grid
+from pymoo_gridpath.grid.picture import scene_of
 from pymoo_gridpath.maps.queries import query_in_metres
 from pymoo_gridpath.objectives import (
     Objective,
@@ -280,7 +281,7 @@ class GridPathProblem(Problem):
 
     def _repr_png_(self) -> bytes:
         grid = self.grid
-        scene = pictures.Scene(grid.occupied, grid.unknown, start=self.start, goal=self.goal, grown=grid.grown_cells)
+        scene = scene_of(grid)._replace(start=self.start, goal=self.goal)
         return pictures.png(scene.cropped(*self.representation.box))
 
     def _repr_html_(self) -> str:

@@ -12,6 +12,7 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.algorithms import CAPABILITIES, find_algorithm
 from pymoo_gridpath.algorithms.factory import DEFAULT_POP_SIZE
 from pymoo_gridpath.algorithms.paper import POP_SIZE
+from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.neighbourhood import neighbourhood_of
 from pymoo_gridpath.planners import reference_planner
 from pymoo_gridpath.problems import MovingObstaclesProblem
@@ -76,7 +77,7 @@ def plan_study(study: Study) -> Plan:
     _check_pairs(study, problems, groups, algorithms)
     runs = _runs(study, problems, algorithms)
     if reference is not None:
-        problems, runs = _with_references(problems, runs, reference)
+        problems, runs = _with_references(problems, groups, runs, reference)
     return Plan(study.name, study.budget or {}, study.target, tuple(problems), tuple(algorithms), tuple(runs), reference)
 
 
@@ -245,11 +246,31 @@ def _twins(study: Study, problems, algorithms, one: PlannedRun, other: PlannedRu
     return study.error(message, ("algorithms", other.algorithm))
 
 
-def _with_references(problems, runs: list[PlannedRun], reference) -> tuple[list[PlannedProblem], list[PlannedRun]]:
-    """Return the problems with the keys of their references, and the runs with these first."""
-    keys = [run_key(problem.spec, reference, None, 0) for problem in problems]
-    wanted = set(keys)
+def _with_references(
+    problems: list[PlannedProblem], groups: list[int], runs: list[PlannedRun], reference: Mapping[str, Any]
+) -> tuple[list[PlannedProblem], list[PlannedRun]]:
+    """Return the problems with the keys of their references, or why there are none, and the runs with these first."""
+    why: dict[int, str] = {}
+    for problem, group in zip(problems, groups, strict=True):
+        if group not in why:
+            why[group] = _why_none(problem, reference)
+    keys = {
+        k: run_key(problem.spec, reference, None, 0)
+        for k, (problem, group) in enumerate(zip(problems, groups, strict=True))
+        if not why[group]
+    }
+    wanted = set(keys.values())
     asked = {run.key: run for run in runs if run.key in wanted}
-    first = [asked.get(key, PlannedRun(key, k, None, 0)) for k, key in enumerate(keys)]
-    problems = [replace(problem, reference=key) for problem, key in zip(problems, keys, strict=True)]
+    first = [asked.get(key, PlannedRun(key, k, None, 0)) for k, key in keys.items()]
+    problems = [replace(one, reference=keys.get(k), no_reference=why[groups[k]]) for k, one in enumerate(problems)]
     return problems, first + [run for run in runs if run.key not in asked]
+
+
+def _why_none(planned: PlannedProblem, reference: Mapping[str, Any]) -> str:
+    """Return why the algorithm of the references cannot solve a problem, as with four objectives; empty if it can."""
+    planner: Any = planner_of(reference["algorithm"])
+    try:
+        planner.refuse(build_problem(planned.spec, planned.grid))
+    except CapabilityError as error:
+        return str(error)
+    return ""

@@ -66,6 +66,8 @@ class PlannedProblem:
         The packed cells of a map; None for random grids, and in a plan read from a file.
     reference : str or None
         The key of the run whose front it is measured against; None if no exact front can be had or is wanted.
+    no_reference : str
+        Why no exact front can be had, so that no run looks for it; empty otherwise.
     source : str
         Where its map comes from, in words; empty for random grids. Part of no key: the cells of the map are.
     place : dict or None
@@ -83,6 +85,7 @@ class PlannedProblem:
     source: str = ""
     place: dict[str, Any] | None = None
     original: bytes | None = None
+    no_reference: str = ""
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ def check_plan(data: Any) -> None:
         for k, item in enumerate(_list(plan["algorithms"], ("algorithms",)))
     ]
     problems = [
-        _table(item, ("label", "group", "spec"), ("problems", k), "a problem", ("reference", "source", "place"))
+        _table(item, ("label", "group", "spec"), ("problems", k), "a problem", ("reference", "source", "place", "no_reference"))
         for k, item in enumerate(_list(plan["problems"], ("problems",)))
     ]
     for k, problem in enumerate(problems):
@@ -94,7 +94,7 @@ def _is_key(value: Any) -> bool:
 
 
 def _check_problem(problem: Mapping[str, Any], where: Where) -> None:
-    _check_texts({"source": "", **problem}, ("label", "group", "source"), where)
+    _check_texts({"source": "", "no_reference": "", **problem}, ("label", "group", "source", "no_reference"), where)
     reference = problem.get("reference")
     if reference is not None and not _is_key(reference):
         raise StudyError(f"reference is {values.show(reference)}, expected the key of a run, or none", (*where, "reference"))

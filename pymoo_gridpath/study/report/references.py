@@ -58,7 +58,7 @@ def reference_of(plan: Plan, problem: int, records: dict[str, tuple[RunRecord | 
         front = ReferenceFront(exact.F, exact=True)
         return ProblemReference(front, "", seconds, bool(fronts) and front.exceeded_by(np.concatenate(fronts)))
     if planned.reference is None:
-        reason = "the study asks for no exact front of this problem, or it has none"
+        reason = planned.no_reference or "the study asks for no exact front of this problem"
     elif exact is None:
         reason = f"the run of the exact front is {status}"
     elif status == "failed":
