@@ -72,7 +72,7 @@ def exact_timed_front(
     horizon : int
         The last tick at which a path may arrive.
     variance : float, default 0.5
-        Of the potential, see `obstacle_potential`.
+        Of the potential of all obstacles, in squared cells.
     budget : Budget, optional
 
     Returns

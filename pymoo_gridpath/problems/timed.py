@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pymoo_gridpath import checks
-from pymoo_gridpath.fields import check_variance
+from pymoo_gridpath.fields import PAPER_VARIANCE, check_variance, given_bell
 from pymoo_gridpath.grid import OccupancyGrid, check_grid
 from pymoo_gridpath.objectives import Length, Objective, Vulnerability
 from pymoo_gridpath.paths.timed import TimedCellPaths
@@ -64,13 +64,16 @@ class TimedPathProblem(GridPathProblem):
         their first, and gaps between states are refused.
     horizon : int
         The last tick at which a path may arrive, 1 to 100,000. A row has a gene for each tick.
-    variance : float, default 0.5
-        Of the potential, see `obstacle_potential`.
+    variance : float, optional
+        Of the potential of all obstacles, in squared cells; by default 0.5, on maps in metres, too, since moving obstacles
+        are cells.
     obstacles : {"penalty", "constraint"}, default "penalty"
         How illegal paths are told from others, as in `GridPathProblem`: by a ``penalty`` on every objective for each occupied
         cell that is crossed and each step that a moving obstacle bars, or by their number as the constraint ``G``.
     penalty : float, optional
         2 by default, see `GridPathProblem`.
+    sigma_m : float, optional
+        In place of the variance, the standard deviation in metres, on a map that states its resolution.
 
     Raises
     ------
@@ -85,6 +88,7 @@ class TimedPathProblem(GridPathProblem):
     movers : Trajectories
     horizon : int
     variance : float
+        In squared cells, whichever was given.
 
     Notes
     -----
@@ -114,12 +118,17 @@ class TimedPathProblem(GridPathProblem):
         goal: Sequence[int],
         movers: Trajectories | Sequence,
         horizon: int,
-        variance: float = 0.5,
+        variance: float | None = None,
         obstacles: Obstacles = "penalty",
         penalty: float | None = None,
+        sigma_m: float | None = None,
     ):
         checks.one_of("obstacles", obstacles, ("penalty", "constraint"))
-        self.variance = check_variance(variance)
+        bell = given_bell(variance, sigma_m)
+        self.variance: float = bell.get("variance", PAPER_VARIANCE)
+        if "sigma_m" in bell:
+            cell = check_grid(grid).check_resolution("sigma_m of the potential, in metres,")
+            self.variance = check_variance((bell["sigma_m"] / cell) ** 2)
         objectives = _Arrival(), Length(), _TimedVulnerability(self.variance)
         if not isinstance(movers, Trajectories):
             movers = Trajectories(movers)

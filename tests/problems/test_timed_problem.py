@@ -248,3 +248,17 @@ def test_the_same_seed_gives_the_same_bits_compiled_and_plain():
         return json.loads(done.stdout)
 
     assert run(NUMBA_DISABLE_JIT="1") == run()
+
+
+def test_the_width_of_the_potential_may_be_said_in_metres():
+    cells = np.zeros((3, 5))
+    cells[0, 2] = 1
+    grid, query = OccupancyGrid(cells, resolution=0.25), ((0, 1), (4, 1), [[(4, 2), (3, 2)]], 8)
+    in_metres, in_cells = TimedPathProblem(grid, *query, sigma_m=0.5), TimedPathProblem(grid, *query, variance=4.0)
+    assert in_metres.variance == 4.0 and TimedPathProblem(grid, *query).variance == 0.5
+    np.testing.assert_array_equal(in_metres.potential, in_cells.potential)
+    np.testing.assert_array_equal(in_metres.pareto_front(max_seconds=60), in_cells.pareto_front(max_seconds=60))
+    with pytest.raises(GridPathError, match="expected one of them"):
+        TimedPathProblem(grid, *query, variance=4.0, sigma_m=0.5)
+    with pytest.raises(GridPathError, match="is in cells, and sigma_m"):
+        TimedPathProblem(OccupancyGrid(cells), *query, sigma_m=0.5)
