@@ -54,7 +54,7 @@ class SmallEnvironments(_Environment):
 
     @property
     def label(self):
-        return f"{self.environment}, corners cut" if self.corner_cutting else self.environment
+        return self.environment + {True: ", corners cut", "one side": ", corners cut on one side"}.get(self.corner_cutting, "")
 
     @functools.cached_property
     def query(self):
