@@ -1,0 +1,286 @@
+"""The cheapest ways to the goal by weighted sums of two costs: bounds of what is left, and ends for paths that have begun."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.exact.costs import Costs
+from pymoo_gridpath.exact.labels import Front
+from pymoo_gridpath.exact.staircase import Staircase, lower
+from pymoo_gridpath.search import UNREACHABLE, Moves
+from pymoo_gridpath.search.shortest import Backward, grown
+
+# What a weighted sum and the two costs of a way are, in the rows.
+SUM, FIRST, SECOND = range(3)
+
+#: Bytes of a state that ways take, and that are kept of them until it is known whether more is needed.
+WAY, WAY_KEPT = 3 * 4 + 1, 4 + 1
+
+
+class Beginning(NamedTuple):
+    """A path whose beginnings may end otherwise: its cells, the state in each, and what has been spent by then."""
+
+    path: np.ndarray
+    states: np.ndarray
+    spent: np.ndarray
+
+
+class Ways:
+    """For each weighted sum that has been minimised the cheapest way to the goal from each state.
+
+    A path that has come to a state can go on along any of them, and its costs then lower the staircase: a path joined so is
+    known, if not on the front, then near it.
+
+    Parameters
+    ----------
+    moves : Moves
+    costs : Costs
+        Of two objectives.
+    goal : int
+    n_weights : int
+        Most weighted sums.
+    staircase : Staircase
+    at_once : bool
+        Whether a label search is sure to come, so that all that it needs is kept from the first.
+
+    Attributes
+    ----------
+    rows : numpy.ndarray of float32, shape (n_states, n_weights, 3)
+        For each state the weighted sum of what is left, or a little less, and both costs of the way that has it, or a little
+        more: single precision takes half the room. The sum is huge, and the costs infinite, where no path below the staircase
+        can lead. Empty until `complete` has been called, if not kept at once.
+    ahead : list of numpy.ndarray of int8
+        Heading of the first step of each of these ways, see `Backward`.
+    """
+
+    def __init__(self, moves: Moves, costs: Costs, goal: int, n_weights: int, staircase: Staircase, at_once: bool):
+        self.moves, self.costs, self.goal, self.staircase = moves, costs, goal, staircase
+        self._n_states = moves.n_cells * (8 if costs.with_heading else 1)
+        self.rows = np.empty((self._n_states if at_once else 0, n_weights, 3), dtype=np.float32)
+        self._at_once, self._sums = at_once, []
+        self.ahead: list[np.ndarray] = []
+        self._beginnings: list[Beginning] = []
+        self._joined: list[tuple[int, np.ndarray]] = []
+
+    @property
+    def n_bytes_more(self) -> int:
+        """Bytes that `complete` will take."""
+        return 0 if self._at_once else self._n_states * len(self.ahead) * (WAY - 1)
+
+    def of(self, found: Backward, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the ways of a weighted sum that has been minimised, as a column of ``rows``, and their headings.
+
+        The costs that the search has found are written over.
+        """
+        column = self.rows[:, number] if self._at_once else np.empty((self._n_states, 3), dtype=np.float32)
+        column[:, SUM] = rounded_down(found.cost[0])
+        self._follow(found.ahead, found.cost, column)
+        return column, found.ahead
+
+    def _follow(self, ahead: np.ndarray, scratch: np.ndarray, column: np.ndarray) -> None:
+        costs = self.costs.step, self.costs.field, self.costs.enter, self.costs.with_heading
+        follow_all(self.moves.offsets, *costs, ahead, self.goal, scratch, column)
+
+    def add(self, column: np.ndarray, ahead: np.ndarray) -> None:
+        """Add ways, and let all paths that are known go on along them."""
+        self.ahead.append(ahead)
+        if not self._at_once:
+            self._sums.append(column[:, SUM].copy())
+        for k, beginning in enumerate(self._beginnings):
+            self._join(k, beginning, column[:, None], len(self.ahead) - 1)
+
+    def begin(self, path: np.ndarray) -> None:
+        """Add a path whose beginnings may go on otherwise."""
+        costs = self.costs.step, self.costs.field, self.costs.enter, self.costs.with_heading
+        self._beginnings.append(Beginning(path, *spent_along(self.moves.offsets, *costs, path)))
+
+    def bound(self, sums: np.ndarray) -> None:
+        """Take sums for bounds where none has been minimised, int64, shape (n_states,)."""
+        self.rows = np.full((len(sums), 1, 3), np.inf, dtype=np.float32)
+        self.rows[:, 0, SUM] = rounded_down(sums)
+
+    def complete(self) -> None:
+        """Make the rows ready for a label search, and let all beginnings of known paths go on along all ways."""
+        if not self._at_once:
+            self.rows = np.empty((self._n_states, len(self.ahead), 3), dtype=np.float32)
+            scratch = np.empty((2, self._n_states), dtype=np.int64)
+            for k, (sums, ahead) in enumerate(zip(self._sums, self.ahead, strict=True)):
+                self.rows[:, k, SUM] = sums
+                self._follow(ahead, scratch, self.rows[:, k])
+            self._sums.clear()
+        for k, beginning in enumerate(self._beginnings):
+            self._join(k, beginning, self.rows[:, : len(self.ahead)], 0)
+
+    def _join(self, number: int, beginning: Beginning, rows: np.ndarray, column: int) -> None:
+        stairs = self.staircase.least, self.staircase.low, self.staircase.shift
+        joined = join(beginning.states, beginning.spent, rows, *stairs)
+        if len(joined):
+            joined[:, 1] += column
+            self._joined.append((number, joined))
+
+    @property
+    def points(self) -> np.ndarray:
+        """The costs of the paths that have been joined so, or a little more, int64, shape (n, 2)."""
+        return np.concatenate([np.empty((0, 2), dtype=np.int64), *(joined[:, 2:] for _, joined in self._joined)])
+
+    def joined(self) -> Front:
+        """Return what is non-dominated of these paths."""
+        rows = [(number, place, column) for number, joined in self._joined for place, column in joined[:, :2].tolist()]
+        paths = []
+        for number, place, column in (rows[k] for k in undominated(self.points)):
+            beginning = self._beginnings[number]
+            paths.append(self.ended(beginning.path[: place + 1], int(beginning.states[place]), column))
+        return self.front(paths)
+
+    def ended(self, path: np.ndarray, state: int, column: int) -> np.ndarray:
+        """Return a path that has come to a state and goes on along a way, its cells but once each."""
+        rest = way(self.moves.offsets, self.costs.with_heading, self.ahead[column], state, self.goal)
+        return without_loops(np.concatenate([path, rest]))
+
+    def front(self, paths: list[np.ndarray]) -> Front:
+        """Return what is non-dominated of some paths."""
+        points = np.array([self.costs.of_path(path, self.moves) for path in paths], dtype=np.int64).reshape(-1, 2)
+        keep = undominated(points)
+        return Front([paths[k] for k in keep], points[keep])
+
+
+def undominated(points: np.ndarray) -> np.ndarray:
+    """Return the places of the non-dominated of points, shape (n, 2), each once and in ascending order of the first cost."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    best_before = np.concatenate([[UNREACHABLE], np.minimum.accumulate(points[order, 1])])[: len(order)]
+    return order[points[order, 1] < best_before]
+
+
+def without_loops(path: np.ndarray) -> np.ndarray:
+    """Return a path without what it does between two visits of the same cell."""
+    last = dict(zip(path.tolist(), range(len(path)), strict=True))
+    if len(last) == len(path):
+        return path
+    kept, k = [], 0
+    while k < len(path):
+        kept.append(path[k])
+        k = last[int(path[k])] + 1
+    return np.array(kept, dtype=path.dtype)
+
+
+def rounded_down(sums: np.ndarray) -> np.ndarray:
+    """Return whole numbers of zero or more as single precision, none larger than it was."""
+    return np.nextafter(sums.astype(np.float32), np.float32(0))
+
+
+@kernel
+def up(cost):
+    """Return a cost in single precision, no less than it was."""
+    return np.nextafter(np.float32(cost), np.float32(np.inf))
+
+
+@kernel
+def follow_all(offsets, step, field, enter, with_heading, ahead, goal, cost, column):
+    """Fill in both costs of the way ahead from each state, see `Ways`; ``cost``, int64, shape (2, n_states), is room for it."""
+    n = len(ahead)
+    waiting = np.empty(n, dtype=np.int32)
+    for state in range(n):
+        cost[0, state] = -1
+    for state in range(n):
+        if ahead[state] < 0:
+            at_goal = (state >> 3 if with_heading else state) == goal
+            cost[0, state] = 0 if at_goal else UNREACHABLE
+            cost[1, state] = cost[0, state]
+        at = state
+        n_waiting = 0
+        while cost[0, at] < 0 and ahead[at] >= 0:
+            waiting[n_waiting] = at
+            n_waiting += 1
+            m = np.int64(ahead[at])
+            cell = (at >> 3 if with_heading else at) + offsets[m]
+            at = 8 * cell + m if with_heading else cell
+        if cost[0, at] < 0:
+            cost[0, at] = 0
+            cost[1, at] = 0
+        while n_waiting > 0:
+            n_waiting -= 1
+            before = np.int64(waiting[n_waiting])
+            cell = at >> 3 if with_heading else at
+            m = np.int64(ahead[before])
+            for k in range(2):
+                cost[k, before] = cost[k, at] + step[k, before & 7 if with_heading else 8, m] + field[k, cell]
+                if enter is not None:
+                    cost[k, before] += enter[k, cell, m]
+            at = before
+        for k in range(2):
+            column[state, 1 + k] = up(cost[k, state]) if cost[0, state] < UNREACHABLE else np.float32(np.inf)
+
+
+@kernel
+def spent_along(offsets, step, field, enter, with_heading, path):
+    """Return the state in each cell of a path but the goal, and what has been spent by then, both int64."""
+    n = len(path) - 1
+    states = np.empty(n, dtype=np.int64)
+    spent = np.zeros((n, 2), dtype=np.int64)
+    # No way leads on from the start with a heading; without one it may.
+    states[0] = -1 if with_heading else path[0]
+    heading = 8
+    for i in range(1, n):
+        m = 0
+        while offsets[m] != path[i] - path[i - 1]:
+            m += 1
+        for k in range(2):
+            spent[i, k] = spent[i - 1, k] + step[k, heading, m] + field[k, path[i]]
+            if enter is not None:
+                spent[i, k] += enter[k, path[i], m]
+        states[i] = 8 * path[i] + m if with_heading else path[i]
+        if with_heading:
+            heading = m
+    return states, spent
+
+
+@kernel
+def join(states, spent, rows, least, low, shift):
+    """Let each beginning of a path go on along all ways, and return those that lower the staircase.
+
+    Returns
+    -------
+    joined : int64, shape (n, 4)
+        Number of the cell where the beginning ends, of the way, and both costs of the path, or a little more.
+    """
+    joined = np.empty((16, 4), dtype=np.int64)
+    n = 0
+    for i in range(len(states)):
+        if states[i] < 0:
+            continue
+        for j in range(rows.shape[1]):
+            if rows[states[i], j, FIRST] == np.inf:
+                continue
+            first = spent[i, 0] + np.int64(rows[states[i], j, FIRST])
+            second = spent[i, 1] + np.int64(rows[states[i], j, SECOND])
+            if lower(least, low, shift, first, second):
+                if n == len(joined):
+                    joined = grown(joined)
+                joined[n, 0] = i
+                joined[n, 1] = j
+                joined[n, 2] = first
+                joined[n, 3] = second
+                n += 1
+    return joined[:n].copy()
+
+
+@kernel
+def way(offsets, with_heading, ahead, state, goal):
+    """Return the cells of the way ahead from a state, without its own."""
+    n = 0
+    at = state
+    while ahead[at] >= 0 and (at >> 3 if with_heading else at) != goal:
+        m = np.int64(ahead[at])
+        cell = (at >> 3 if with_heading else at) + offsets[m]
+        at = 8 * cell + m if with_heading else cell
+        n += 1
+    cells = np.empty(n, dtype=np.int64)
+    at = state
+    for k in range(n):
+        m = np.int64(ahead[at])
+        cells[k] = (at >> 3 if with_heading else at) + offsets[m]
+        at = 8 * cells[k] + m if with_heading else cells[k]
+    return cells
