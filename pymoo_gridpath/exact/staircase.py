@@ -80,7 +80,7 @@ def ceiling(least, low, shift, begin, end, first_weight, second_weight):
 
 
 @kernel
-def lower_marks(least, low, shift, gaps, weights, allowed, begin, ceilings, marks):
+def lower_marks(least, low, shift, gaps, weights, allowed, begin, all_gaps, ceilings, marks):
     """Fill in what labels must stay below in each gap, and return the first gap in which they can, from a bin on.
 
     A corner lies one unit beyond the known points, which have to be found again; where points may be missed, by what is allowed
@@ -97,24 +97,34 @@ def lower_marks(least, low, shift, gaps, weights, allowed, begin, ceilings, mark
         By how much points may be missed, see `Allowance.counted`.
     begin : int
         The bin.
+    all_gaps : bool
+        Whether anything has lowered the staircase; otherwise only the first gap has less of it than before.
     ceilings : float, shape (n_gaps,)
         Least upper bound of the weighted sum over the corners of each gap.
     marks : int64, shape (n_gaps, 2)
         Least upper bounds of f1 over the corners of each gap, and of f2 over those of this gap and the ones behind.
     """
     first = gaps[begin]
-    for j in range(first, len(weights)):
+    end = len(weights) if all_gaps else first + 1
+    exact = allowed[0, 1] == 0 and allowed[0, 2] == 0 and allowed[1, 1] == 0 and allowed[1, 2] == 0
+    for j in range(first, end):
         ceilings[j] = -1.0
         marks[j, 0] = -1
         marks[j, 1] = -1
     for k in range(begin, len(least)):
         j = gaps[k]
-        one = lowered(low + ((k + 1) << shift), allowed[0, 0], allowed[0, 1], allowed[0, 2])
-        two = lowered(least[k], allowed[1, 0], allowed[1, 1], allowed[1, 2]) + 1
+        if j >= end:
+            break
+        one = low + ((k + 1) << shift)
+        two = least[k]
+        if not exact:
+            one = lowered(one, allowed[0, 0], allowed[0, 1], allowed[0, 2])
+            two = lowered(two, allowed[1, 0], allowed[1, 1], allowed[1, 2])
+        two += 1
         ceilings[j] = max(ceilings[j], (weights[j, 0] * one + weights[j, 1] * two) * (1.0 + _ROUNDING))
         marks[j, 0] = max(marks[j, 0], one)
         marks[j, 1] = max(marks[j, 1], two)
-    for j in range(len(weights) - 2, first - 1, -1):
+    for j in range(min(end, len(weights) - 1) - 1, first - 1, -1):
         # A gap may be narrower than a bin, and those behind it still have corners.
         marks[j, 1] = max(marks[j, 1], marks[j + 1, 1])
     return first

@@ -232,7 +232,7 @@ def first_promising(f1, f2, g1, g2, state, rows, column, weights, ceilings, mark
         if f2 >= marks[j, 1]:
             # Nor does it stay below the corners of the gaps behind, which lie lower.
             return -1
-        if f1 < marks[j, 0] and weights[j, 0] * g1 + weights[j, 1] * g2 + rows[state, column[j], SUM] < ceilings[j]:
+        if f1 < marks[j, 0] and weights[j, 0] * g1 + weights[j, 1] * g2 + rows[column[j], state, SUM] < ceilings[j]:
             return j
     return -1
 
@@ -305,7 +305,7 @@ def search_two(
     status = DONE
     pops = 0
     gap = 0
-    looked, next_look, lower_now = np.int64(-1), 0, True
+    looked, next_look, is_lower = np.int64(-1), 0, True
     while n > 0:
         status = full(n, n_closed, counts[N_FOUND], heap, closed, found)
         if status == DONE and counts[N_JOINED] == len(joined):
@@ -331,9 +331,13 @@ def search_two(
         if g2 >= states[state, LEAST2]:
             continue
         g1 = f1 - states[state, BOUND1]
-        if here > looked or (lower_now and pops >= next_look):
-            gap = lower_marks(least, low, shift, gaps, weights, allowed, here, ceilings, marks)
-            looked, next_look, lower_now = here + _BINS_TO_LOOK, pops + _POPS_TO_LOOK, False
+        if here > looked or pops >= next_look:
+            all_gaps = is_lower and pops >= next_look
+            gap = lower_marks(least, low, shift, gaps, weights, allowed, here, all_gaps, ceilings, marks)
+            looked = here + _BINS_TO_LOOK
+            if pops >= next_look:
+                next_look = pops + _POPS_TO_LOOK
+                is_lower = False
         from_gap = first_promising(f1, f2, g1, g2, state, rows, column, weights, ceilings, marks, max(gap, gaps[here]))
         if from_gap < 0:
             continue
@@ -354,13 +358,13 @@ def search_two(
             found[counts[N_FOUND], 2] = f2
             counts[N_FOUND] += 1
             n_closed += 1
-            lower_now |= lower(least, low, shift, f1, f2)
+            is_lower |= lower(least, low, shift, f1, f2)
             continue
-        if rows[state, column[from_gap], FIRST] < np.inf:
-            first = g1 + np.int64(rows[state, column[from_gap], FIRST])
-            second = g2 + np.int64(rows[state, column[from_gap], SECOND])
+        if rows[column[from_gap], state, FIRST] < np.inf:
+            first = g1 + np.int64(rows[column[from_gap], state, FIRST])
+            second = g2 + np.int64(rows[column[from_gap], state, SECOND])
             if lower(least, low, shift, first, second):
-                lower_now = True
+                is_lower = True
                 joined[counts[N_JOINED], 0] = n_closed
                 joined[counts[N_JOINED], 1] = column[from_gap]
                 joined[counts[N_JOINED], 2] = first

@@ -13,6 +13,9 @@ from pymoo_gridpath.exact.staircase import Staircase, lower
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.shortest import Backward, grown
 
+# Factors by which a number becomes no larger, or no smaller, in single precision, which rounds by half as much at most.
+_DOWN, _UP = 1.0 - 2.0**-23, 1.0 + 2.0**-23
+
 # What a weighted sum and the two costs of a way are, in the rows.
 SUM, FIRST, SECOND = range(3)
 
@@ -48,7 +51,7 @@ class Ways:
 
     Attributes
     ----------
-    rows : numpy.ndarray of float32, shape (n_states, n_weights, 3)
+    rows : numpy.ndarray of float32, shape (n_weights, n_states, 3)
         For each state the weighted sum of what is left, or a little less, and both costs of the way that has it, or a little
         more: single precision takes half the room. The sum is huge, and the costs infinite, where no path below the staircase
         can lead. Empty until `complete` has been called, if not kept at once.
@@ -59,7 +62,7 @@ class Ways:
     def __init__(self, moves: Moves, costs: Costs, goal: int, n_weights: int, staircase: Staircase, at_once: bool):
         self.moves, self.costs, self.goal, self.staircase = moves, costs, goal, staircase
         self._n_states = moves.n_cells * (8 if costs.with_heading else 1)
-        self.rows = np.empty((self._n_states if at_once else 0, n_weights, 3), dtype=np.float32)
+        self.rows = np.empty((n_weights, self._n_states if at_once else 0, 3), dtype=np.float32)
         self._at_once, self._sums = at_once, []
         self.ahead: list[np.ndarray] = []
         self._beginnings: list[Beginning] = []
@@ -75,8 +78,7 @@ class Ways:
 
         The costs that the search has found are written over.
         """
-        column = self.rows[:, number] if self._at_once else np.empty((self._n_states, 3), dtype=np.float32)
-        column[:, SUM] = rounded_down(found.cost[0])
+        column = self.rows[number] if self._at_once else np.empty((self._n_states, 3), dtype=np.float32)
         self._follow(found.ahead, found.cost, column)
         return column, found.ahead
 
@@ -90,7 +92,7 @@ class Ways:
         if not self._at_once:
             self._sums.append(column[:, SUM].copy())
         for k, beginning in enumerate(self._beginnings):
-            self._join(k, beginning, column[:, None], len(self.ahead) - 1)
+            self._join(k, beginning, column[None], len(self.ahead) - 1)
 
     def begin(self, path: np.ndarray) -> None:
         """Add a path whose beginnings may go on otherwise."""
@@ -99,20 +101,20 @@ class Ways:
 
     def bound(self, sums: np.ndarray) -> None:
         """Take sums for bounds where none has been minimised, int64, shape (n_states,)."""
-        self.rows = np.full((len(sums), 1, 3), np.inf, dtype=np.float32)
-        self.rows[:, 0, SUM] = rounded_down(sums)
+        self.rows = np.full((1, len(sums), 3), np.inf, dtype=np.float32)
+        self.rows[0, :, SUM] = sums * _DOWN
 
     def complete(self) -> None:
         """Make the rows ready for a label search, and let all beginnings of known paths go on along all ways."""
         if not self._at_once:
-            self.rows = np.empty((self._n_states, len(self.ahead), 3), dtype=np.float32)
+            self.rows = np.empty((len(self.ahead), self._n_states, 3), dtype=np.float32)
             scratch = np.empty((2, self._n_states), dtype=np.int64)
             for k, (sums, ahead) in enumerate(zip(self._sums, self.ahead, strict=True)):
-                self.rows[:, k, SUM] = sums
-                self._follow(ahead, scratch, self.rows[:, k])
+                scratch[0] = sums
+                self._follow(ahead, scratch, self.rows[k])
             self._sums.clear()
         for k, beginning in enumerate(self._beginnings):
-            self._join(k, beginning, self.rows[:, : len(self.ahead)], 0)
+            self._join(k, beginning, self.rows[: len(self.ahead)], 0)
 
     def _join(self, number: int, beginning: Beginning, rows: np.ndarray, column: int) -> None:
         stairs = self.staircase.least, self.staircase.low, self.staircase.shift
@@ -166,29 +168,25 @@ def without_loops(path: np.ndarray) -> np.ndarray:
     return np.array(kept, dtype=path.dtype)
 
 
-def rounded_down(sums: np.ndarray) -> np.ndarray:
-    """Return whole numbers of zero or more as single precision, none larger than it was."""
-    return np.nextafter(sums.astype(np.float32), np.float32(0))
-
-
-@kernel
-def up(cost):
-    """Return a cost in single precision, no less than it was."""
-    return np.nextafter(np.float32(cost), np.float32(np.inf))
-
-
 @kernel
 def follow_all(offsets, step, field, enter, with_heading, ahead, goal, cost, column):
-    """Fill in both costs of the way ahead from each state, see `Ways`; ``cost``, int64, shape (2, n_states), is room for it."""
+    """Fill in a column of `Ways`: the sum of the way ahead from each state, and both its costs.
+
+    ``cost``, int64, shape (2, n_states), holds the sums first, and is written over.
+    """
     n = len(ahead)
     waiting = np.empty(n, dtype=np.int32)
     for state in range(n):
+        column[state, SUM] = np.float32(cost[0, state] * _DOWN)
         cost[0, state] = -1
     for state in range(n):
         if ahead[state] < 0:
             at_goal = (state >> 3 if with_heading else state) == goal
             cost[0, state] = 0 if at_goal else UNREACHABLE
             cost[1, state] = cost[0, state]
+            column[state, FIRST] = np.float32(0.0 if at_goal else np.inf)
+            column[state, SECOND] = column[state, FIRST]
+            continue
         at = state
         n_waiting = 0
         while cost[0, at] < 0 and ahead[at] >= 0:
@@ -198,6 +196,7 @@ def follow_all(offsets, step, field, enter, with_heading, ahead, goal, cost, col
             cell = (at >> 3 if with_heading else at) + offsets[m]
             at = 8 * cell + m if with_heading else cell
         if cost[0, at] < 0:
+            # The goal.
             cost[0, at] = 0
             cost[1, at] = 0
         while n_waiting > 0:
@@ -210,8 +209,8 @@ def follow_all(offsets, step, field, enter, with_heading, ahead, goal, cost, col
                 if enter is not None:
                     cost[k, before] += enter[k, cell, m]
             at = before
-        for k in range(2):
-            column[state, 1 + k] = up(cost[k, state]) if cost[0, state] < UNREACHABLE else np.float32(np.inf)
+        column[state, FIRST] = np.float32(cost[0, state] * _UP)
+        column[state, SECOND] = np.float32(cost[1, state] * _UP)
 
 
 @kernel
@@ -251,11 +250,11 @@ def join(states, spent, rows, least, low, shift):
     for i in range(len(states)):
         if states[i] < 0:
             continue
-        for j in range(rows.shape[1]):
-            if rows[states[i], j, FIRST] == np.inf:
+        for j in range(len(rows)):
+            if rows[j, states[i], FIRST] == np.inf:
                 continue
-            first = spent[i, 0] + np.int64(rows[states[i], j, FIRST])
-            second = spent[i, 1] + np.int64(rows[states[i], j, SECOND])
+            first = spent[i, 0] + np.int64(rows[j, states[i], FIRST])
+            second = spent[i, 1] + np.int64(rows[j, states[i], SECOND])
             if lower(least, low, shift, first, second):
                 if n == len(joined):
                     joined = grown(joined)
