@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
@@ -21,14 +19,6 @@ SUM, FIRST, SECOND = range(3)
 
 #: Bytes of a state that ways take, and that are kept of them until it is known whether more is needed.
 WAY, WAY_KEPT = 3 * 4 + 1, 4 + 1
-
-
-class Beginning(NamedTuple):
-    """A path whose beginnings may end otherwise: its cells, the state in each, and what has been spent by then."""
-
-    path: np.ndarray
-    states: np.ndarray
-    spent: np.ndarray
 
 
 class Ways:
@@ -65,8 +55,10 @@ class Ways:
         self.rows = np.empty((n_weights, self._n_states if at_once else 0, 3), dtype=np.float32)
         self._at_once, self._sums = at_once, []
         self.ahead: list[np.ndarray] = []
-        self._beginnings: list[Beginning] = []
-        self._joined: list[tuple[int, np.ndarray]] = []
+        # Of all paths together: the state in each cell but the goal, and what has been spent by then.
+        self._paths: list[np.ndarray] = []
+        self._states, self._spent = np.empty(0, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
+        self._joined = [np.empty((0, 4), dtype=np.int64)]
 
     @property
     def n_bytes_more(self) -> int:
@@ -91,13 +83,14 @@ class Ways:
         self.ahead.append(ahead)
         if not self._at_once:
             self._sums.append(column[:, SUM].copy())
-        for k, beginning in enumerate(self._beginnings):
-            self._join(k, beginning, column[None], len(self.ahead) - 1)
+        self._join(column[None], len(self.ahead) - 1)
 
     def begin(self, path: np.ndarray) -> None:
         """Add a path whose beginnings may go on otherwise."""
         costs = self.costs.step, self.costs.field, self.costs.enter, self.costs.with_heading
-        self._beginnings.append(Beginning(path, *spent_along(self.moves.offsets, *costs, path)))
+        states, spent = spent_along(self.moves.offsets, *costs, path)
+        self._paths.append(path)
+        self._states, self._spent = np.concatenate([self._states, states]), np.concatenate([self._spent, spent])
 
     def bound(self, sums: np.ndarray) -> None:
         """Take sums for bounds where none has been minimised, int64, shape (n_states,)."""
@@ -113,28 +106,28 @@ class Ways:
                 scratch[0] = sums
                 self._follow(ahead, scratch, self.rows[k])
             self._sums.clear()
-        for k, beginning in enumerate(self._beginnings):
-            self._join(k, beginning, self.rows[: len(self.ahead)], 0)
+        self._join(self.rows[: len(self.ahead)], 0)
 
-    def _join(self, number: int, beginning: Beginning, rows: np.ndarray, column: int) -> None:
+    def _join(self, rows: np.ndarray, column: int) -> None:
         stairs = self.staircase.least, self.staircase.low, self.staircase.shift
-        joined = join(beginning.states, beginning.spent, rows, *stairs)
-        if len(joined):
-            joined[:, 1] += column
-            self._joined.append((number, joined))
+        joined = join(self._states, self._spent, rows, *stairs)
+        joined[:, 1] += column
+        self._joined.append(joined)
 
     @property
     def points(self) -> np.ndarray:
         """The costs of the paths that have been joined so, or a little more, int64, shape (n, 2)."""
-        return np.concatenate([np.empty((0, 2), dtype=np.int64), *(joined[:, 2:] for _, joined in self._joined)])
+        return np.concatenate(self._joined)[:, 2:]
 
     def joined(self) -> Front:
         """Return what is non-dominated of these paths."""
-        rows = [(number, place, column) for number, joined in self._joined for place, column in joined[:, :2].tolist()]
+        joined = np.concatenate(self._joined)
+        ends = np.cumsum([len(path) - 1 for path in self._paths])
         paths = []
-        for number, place, column in (rows[k] for k in undominated(self.points)):
-            beginning = self._beginnings[number]
-            paths.append(self.ended(beginning.path[: place + 1], int(beginning.states[place]), column))
+        for place, column in joined[undominated(joined[:, 2:]), :2].tolist():
+            number = int(np.searchsorted(ends, place, side="right"))
+            path = self._paths[number][: place - int(ends[number]) + len(self._paths[number])]
+            paths.append(self.ended(path, int(self._states[place]), column))
         return self.front(paths)
 
     def ended(self, path: np.ndarray, state: int, column: int) -> np.ndarray:
@@ -238,12 +231,12 @@ def spent_along(offsets, step, field, enter, with_heading, path):
 
 @kernel
 def join(states, spent, rows, least, low, shift):
-    """Let each beginning of a path go on along all ways, and return those that lower the staircase.
+    """Let paths go on along all ways, and return those that lower the staircase.
 
     Returns
     -------
     joined : int64, shape (n, 4)
-        Number of the cell where the beginning ends, of the way, and both costs of the path, or a little more.
+        Number of the state where a path goes on, of the way, and both costs of the whole, or a little more.
     """
     joined = np.empty((16, 4), dtype=np.int64)
     n = 0
