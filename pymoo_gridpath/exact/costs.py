@@ -10,7 +10,7 @@ import numpy as np
 
 from pymoo_gridpath.errors import CapabilityError
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid
-from pymoo_gridpath.neighbourhood import DIAGONAL, HEADINGS, turn_units
+from pymoo_gridpath.neighbourhood import DIAGONAL, HEADING_OF, HEADINGS, turn_units
 from pymoo_gridpath.objectives import Objective, field_of, moves_of
 from pymoo_gridpath.search import Moves
 
@@ -134,6 +134,14 @@ class Costs:
         """Return the costs of the cells in a part of the box that ``moves`` are of."""
         enter = None if self.enter is None else moves.part_of(self.enter, part).reshape(len(self.enter), -1, 8)
         return Costs(self.step, moves.part_of(self.field, part), self.unit, self.off, enter)
+
+    def of_path(self, path: np.ndarray, moves: Moves) -> np.ndarray:
+        """Return the costs of a path, int64, shape (k,), without that of the start cell."""
+        dx, dy = np.diff(moves.cells(path), axis=0).T
+        heading = HEADING_OF[dy + 1, dx + 1]
+        before = np.concatenate([[8], heading[:-1]])
+        total = self.step[:, before, heading].sum(axis=1) + self.field[:, path[1:]].sum(axis=1)
+        return total if self.enter is None else total + self.enter[:, path[1:], heading].sum(axis=1)
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Return points, shape (N, k), in the units of the objectives: the same for equal sums in whatever unit."""

@@ -21,7 +21,7 @@ from pymoo_gridpath.exact.tie_break import smoothest_paths, traced_paths
 from pymoo_gridpath.search import Moves
 
 # Why a kernel returned.
-DONE, HEAP_FULL, CLOSED_FULL, FOUND_FULL, LISTS_FULL, PAUSED = range(6)
+DONE, HEAP_FULL, CLOSED_FULL, FOUND_FULL, LISTS_FULL, JOINED_FULL, PAUSED = range(7)
 
 # Places in the array of counts; a search may have more of its own.
 N_OPEN, N_CLOSED, N_FOUND, N_POPPED = range(4)

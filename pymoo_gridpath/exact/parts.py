@@ -16,7 +16,6 @@ from pymoo_gridpath.exact.one import front_of_one
 from pymoo_gridpath.exact.steps import Steps, last, mapped
 from pymoo_gridpath.exact.three import front_of_three, fronts_of_three
 from pymoo_gridpath.exact.two import fronts_of_two
-from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.objectives import Objective
 from pymoo_gridpath.search import UNREACHABLE, Moves
 
@@ -131,7 +130,7 @@ def _front_of_short_paths(moves: Moves, costs: Costs, start: int, goal: int, mos
         if not meter.message:
             found = front_of_three(moves, _three(costs.take(objectives)), start, goal, meter, most_steps).paths
             paths = paths + found if len(objectives) < n_obj or meter.message else found
-    points = np.array([_costs_of(path, moves, costs) for path in paths], dtype=np.int64).reshape(-1, n_obj)
+    points = np.array([costs.of_path(path, moves) for path in paths], dtype=np.int64).reshape(-1, n_obj)
     return Front(paths, points, None if meter.message else WHOLE)
 
 
@@ -146,15 +145,6 @@ def _three(costs: Costs) -> Costs:
         off=np.insert(costs.off, place, 0),
         enter=None if costs.enter is None else np.insert(costs.enter, place, 0, axis=0),
     )
-
-
-def _costs_of(path: np.ndarray, moves: Moves, costs: Costs) -> np.ndarray:
-    """Return the costs of a path, int64, shape (k,), without that of the start cell."""
-    dx, dy = np.diff(moves.cells(path), axis=0).T
-    heading = HEADING_OF[dy + 1, dx + 1]
-    before = np.concatenate([[8], heading[:-1]])
-    total = costs.step[:, before, heading].sum(axis=1) + costs.field[:, path[1:]].sum(axis=1)
-    return total if costs.enter is None else total + costs.enter[:, path[1:], heading].sum(axis=1)
 
 
 def _cheap_part(

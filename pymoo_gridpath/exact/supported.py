@@ -13,7 +13,9 @@ from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.nearness import Allowance, Certificate, Lines, certificate
+from pymoo_gridpath.exact.staircase import Staircase
 from pymoo_gridpath.exact.steps import Pace, Steps
+from pymoo_gridpath.exact.ways import WAY, WAY_KEPT, Ways, undominated
 from pymoo_gridpath.neighbourhood import OPPOSITE
 from pymoo_gridpath.search import UNREACHABLE, Moves
 from pymoo_gridpath.search.shortest import Backward
@@ -22,8 +24,10 @@ from pymoo_gridpath.search.shortest import Backward
 # let run, where a search takes long enough.
 _SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**16
 
+_NO_LINES = Lines(np.empty((0, 2)), np.empty(0))
+
 # Bytes of a state of the label search.
-_STATE = 40
+_STATE = 64
 
 # Of smaller grids a part saves less than it takes to find.
 _CELLS_WORTH_A_PART = 2**10
@@ -49,11 +53,10 @@ class Hull(NamedTuple):
         The cells of a path for each point.
     weights : numpy.ndarray of float, shape (n_gaps, 2)
         Weights of a sum of both costs for each gap between neighbouring points; one row if there is a single point.
-    weighted : numpy.ndarray of float32, shape (n_states, n_weights)
-        Least weighted sum from each state to the goal, or a little less: single precision, rounded down, is precise enough for
-        a bound and takes half the room. Huge where no path to a point in the gap can lead.
+    ways : Ways
+        The cheapest ways on by each weighted sum that was minimised, and the staircase of all paths that are known.
     column : numpy.ndarray of int64, shape (n_gaps,)
-        Column of ``weighted`` for each gap.
+        Column of ``ways.rows`` for each gap.
     lines : Lines
         The weighted sums that were minimised.
     """
@@ -66,7 +69,7 @@ class Hull(NamedTuple):
     points: np.ndarray
     paths: list[np.ndarray]
     weights: np.ndarray
-    weighted: np.ndarray
+    ways: Ways
     column: np.ndarray
     lines: Lines
 
@@ -123,21 +126,15 @@ def _supported_points(
     whole = moves
     bounds, ends = _ends(moves, costs, start, goal, meter, map_)
     if meter.message:
-        return Hull(moves, costs, start, goal, bounds, np.empty((0, 2), dtype=np.int64), [], *_no_weights(bounds))
+        ways = Ways(moves, costs, goal, 0, Staircase((0, 0), (0, 0), 1), at_once=False)
+        return _without_weights(moves, costs, start, goal, bounds, np.empty((0, 2), dtype=np.int64), [], ways)
     (left, first), (right, last) = ends
-    # Cells of the whole grid, and of the part of it that the searches to come are of.
-    found, used, sums_of = {left: first, right: last}, [], []
-
-    def so_far() -> Front:
-        points = non_dominated(np.array(list(found)))
-        paths = [found[point] for point in map(tuple, points.tolist())]
-        if moves is not whole:
-            paths = [whole.from_grid(moves.to_grid(path)) for path in paths]
-        return Front(paths, points, _certificate(found, used, sums_of, costs, start))
-
+    found = {left: first, right: last}
     # Both ends took up to three searches of the whole.
     if pace.due(3 * bounds.shape[1], len(found), len(first)):
-        yield so_far
+        ends_alone = np.array(sorted(found))
+        certified = certificate(ends_alone, _NO_LINES, costs.field[:, start])
+        yield lambda: Front([found[point] for point in sorted(found)], ends_alone, certified)
     # Where costs depend on headings, which of equal paths is found hangs on all labels, those that lead nowhere too.
     most = (UNREACHABLE, UNREACHABLE) if costs.with_heading else (right[0], left[1])
     # First the cells from where the goal is no farther than for the front, then those that lie on ways no longer than for it.
@@ -153,35 +150,55 @@ def _supported_points(
         near = np.all([spent[k] + bounds[k] <= most[k] for k in needed], axis=0)
         moves, costs, start, goal, (bounds, spent) = _around(near, moves, costs, start, goal, [bounds, spent])
 
-    def minimise(gap):
-        _, low, high, _ = gap
-        return _minimise(moves, costs, _normal(low, high), start, goal, spent, (high[0], low[1]), meter)
+    def minimise(gap_and_column):
+        (_, low, high, _), column = gap_and_column
+        weights = _normal(low, high)
+        # What labels stay below; and one more for rounding.
+        limit = int(staircase.ceiling(low, high, weights)) + 2
+        return _minimise(moves, costs, weights, start, goal, spent, limit, ways, column, meter)
 
+    # Cells of the part of the grid that is left.
     found = {point: moves.from_grid(whole.to_grid(path)) for point, path in found.items()}
+    used, sums_of = [], []
     n_weights = _affordable(n_weights, bounds, costs, meter, allowance)
-    weighted = _Columns(bounds.shape[1], n_weights, at_once=not allowance.name)
+    staircase = Staircase(left, right, bounds.shape[1])
+    ways = Ways(moves, costs, goal, n_weights, staircase, at_once=not allowance.name)
+    for path in found.values():
+        ways.begin(path)
+
+    def proven() -> Certificate:
+        points = np.concatenate([np.array(list(found)), ways.points])
+        lines = Lines(np.array(used).reshape(-1, 2), np.array(sums_of, dtype=float))
+        return certificate(points[undominated(points)], lines, costs.field[:, start])
+
+    def so_far() -> Front:
+        front = merged([Front(list(found.values()), np.array(list(found))), ways.joined()])
+        return Front([whole.from_grid(moves.to_grid(path)) for path in front.paths], front.points, proven())
+
     extent = (max(right[0] - left[0], 1), max(left[1] - right[1], 1))
     # A gap that is not divided has the weights of the one that it is a part of, which bound its points, too.
     gaps, narrow = [(0.0, left, right, 0)] if left != right else [], []
     while gaps and len(used) < n_weights:
         meter.check()
-        if meter.message or (allowance.name and allowance.allows(_certificate(found, used, sums_of, costs, start))):
+        if meter.message or (allowance.name and allowance.allows(proven())):
             break
         # After the last two searches.
-        if used and pace.due(2 * bounds.shape[1], len(found), len(first)):
+        if used and pace.due(2 * bounds.shape[1], staircase.steps, len(first)):
             yield so_far
         widest = [heapq.heappop(gaps) for _ in range(min(_SIDE_BY_SIDE, len(gaps), n_weights - len(used)))]
-        for gap, least in zip(widest, list(map_(minimise, widest)), strict=True):
-            if least is None:
-                heapq.heappush(gaps, gap)
-                continue
-            (sums, total, point, path), column = least, len(used)
+        columns = range(len(used), len(used) + len(widest))
+        results = list(map_(minimise, zip(widest, columns, strict=True)))
+        if None in results:
+            gaps += widest
+            break
+        for gap, column, (total, point, path, found_ways) in zip(widest, columns, results, strict=True):
             _, low, high, _ = gap
             used.append(_normal(low, high))
             sums_of.append(total)
-            weighted.add(_rounded_down(sums))
+            ways.add(*found_ways)
             if low[0] < point[0] < high[0] and high[1] < point[1] < low[1]:
                 found[point] = path
+                ways.begin(path)
                 for a, b in ((low, point), (point, high)):
                     heapq.heappush(gaps, (-max((b[0] - a[0]) / extent[0], (a[1] - b[1]) / extent[1]), a, b, column))
             else:
@@ -191,27 +208,30 @@ def _supported_points(
     paths = [found[point] for point in points]
     given = moves, costs, start, goal, bounds, np.array(points), paths
     if not used:
-        return Hull(*given, *_no_weights(bounds))
+        return _without_weights(*given, ways)
     column = np.array([column for _, column in sorted(narrow)])
-    near = allowance.name and allowance.allows(_certificate(found, used, sums_of, costs, start))
+    near = allowance.name and allowance.allows(proven())
     if not near and not meter.message:
-        meter.check(n_bytes=weighted.n_bytes_more)
+        meter.check(n_bytes=ways.n_bytes_more + _STATE * bounds.shape[1])
     # Nothing is searched for otherwise, and no bound asked for.
-    rows = np.empty((0, len(used)), dtype=np.float32) if near or meter.message else weighted.rows()
-    return Hull(*given, np.array(used)[column], rows, column, Lines(np.array(used), np.array(sums_of, dtype=float)))
+    if not near and not meter.message:
+        ways.complete()
+    return Hull(*given, np.array(used)[column], ways, column, Lines(np.array(used), np.array(sums_of, dtype=float)))
 
 
-def non_dominated(points: np.ndarray) -> np.ndarray:
-    """Return the non-dominated ones of points, shape (n, 2), each once and in ascending order of the first cost."""
-    points = points[np.lexsort((points[:, 1], points[:, 0]))]
-    best_before = np.concatenate([[UNREACHABLE], np.minimum.accumulate(points[:-1, 1])])
-    return points[points[:, 1] < best_before]
+def _without_weights(moves: Moves, costs: Costs, start: int, goal: int, bounds, points, paths, ways: Ways) -> Hull:
+    """Return what is known where no weighted sum was minimised: that of both bounds will do."""
+    ways.bound(bounds.sum(axis=0))
+    column = np.zeros(1, dtype=np.int64)
+    return Hull(moves, costs, start, goal, bounds, points, paths, np.ones((1, 2)), ways, column, _NO_LINES)
 
 
-def _certificate(found, used: list, sums_of: list[int], costs: Costs, start: int) -> Certificate:
-    """Return how near the points found so far are proven to come to the front."""
-    lines = Lines(np.array(used).reshape(-1, 2), np.array(sums_of, dtype=float))
-    return certificate(non_dominated(np.array(list(found))), lines, costs.field[:, start])
+def merged(fronts: list[Front]) -> Front:
+    """Return what is non-dominated of several fronts."""
+    points = np.concatenate([front.points for front in fronts])
+    paths = [path for front in fronts for path in front.paths]
+    keep = undominated(points)
+    return Front([paths[k] for k in keep], points[keep])
 
 
 def _ends(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, map_):
@@ -245,48 +265,6 @@ def _around(near: np.ndarray, moves: Moves, costs: Costs, start: int, goal: int,
     return part, costs.within(moves, part), int(ends[0]), int(ends[1]), [moves.part_of(array, part) for array in arrays]
 
 
-class _Columns:
-    """Weighted sums as columns of an array, in which those of a state lie side by side.
-
-    Where the label search that needs them may not come, they are put there last.
-    """
-
-    def __init__(self, n_states: int, n_weights: int, at_once: bool):
-        self._rows = np.empty((n_states, n_weights), dtype=np.float32) if at_once else None
-        self._columns: list[np.ndarray] = []
-        self._n = 0
-
-    def add(self, sums: np.ndarray) -> None:
-        if self._rows is None:
-            self._columns.append(sums)
-        else:
-            self._rows[:, self._n] = sums
-            self._n += 1
-
-    @property
-    def n_bytes_more(self) -> int:
-        """Bytes that the array, and the states of the label search, take besides."""
-        return sum(column.nbytes for column in self._columns) + sum(len(column) * _STATE for column in self._columns[:1])
-
-    def rows(self) -> np.ndarray:
-        """Return the array, float32, shape (n_states, n_weights)."""
-        if self._rows is None:
-            self._rows = np.stack(self._columns, axis=1)
-            self._columns.clear()
-        return self._rows
-
-
-def _no_weights(bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Lines]:
-    """Return weights, weighted sums, their columns, and lines when none was minimised."""
-    lines = Lines(np.empty((0, 2)), np.empty(0))
-    return np.ones((1, 2)), _rounded_down(bounds.sum(axis=0))[:, None], np.zeros(1, dtype=np.int64), lines
-
-
-def _rounded_down(sums: np.ndarray) -> np.ndarray:
-    """Return whole numbers of zero or more as single precision, none larger than it was."""
-    return np.nextafter(sums.astype(np.float32), np.float32(0))
-
-
 def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter, allowance: Allowance) -> int:
     """Return how many weighted sums there is memory for, and note what arrays of the size of the grid take.
 
@@ -294,11 +272,13 @@ def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter, 
     """
     n_states = bounds.shape[1]
     # Bounds, the searches under way with their costs, and the states of the label search.
-    base = n_states * (bounds.itemsize * 2 + (17 + 32) * _SIDE_BY_SIDE + (0 if allowance.name else _STATE))
+    base = n_states * (bounds.itemsize * 2 + (17 + 32 + 4) * _SIDE_BY_SIDE + (0 if allowance.name else _STATE))
     base += 0 if costs.enter is None else costs.enter.nbytes * (1 + _SIDE_BY_SIDE)
     share = 0.9 if allowance.name else 0.5
-    n_weights = max(0, min(n_weights, int((share * meter.memory - base) // (4 * n_states))))
-    meter.n_fixed = base + 4 * n_states * max(n_weights, 1)
+    # Before it is known that a label search will come, sums and headings alone are kept.
+    each = n_states * (WAY_KEPT if allowance.name else WAY)
+    n_weights = max(0, min(n_weights, int((share * meter.memory - base) // each)))
+    meter.n_fixed = base + each * max(n_weights, 1)
     return n_weights
 
 
@@ -341,19 +321,18 @@ def _normal(low, high) -> tuple[float, float]:
     return first / larger, second / larger
 
 
-def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent: np.ndarray, corner, meter: Meter):
-    """Return least weighted sums, from every state and from the start, rounded down step by step, and their point and path.
+def _minimise(moves: Moves, costs: Costs, weights, start: int, goal: int, spent, limit: int, ways: Ways, number: int, meter):
+    """Return the least weighted sum from the start, its point and its path, and the ways from every state.
 
-    None if a budget is used up before. States from which no path below the corner goes on have no finite sum.
+    None if a budget is used up before. From states through which no path has a sum below the limit there is none.
     """
-    # One unit beyond the corner lies what labels stay below, see _corners of the label search; and one more for rounding.
-    limit = int((weights[0] * (corner[0] + 1) + weights[1] * (corner[1] + 1)) * (1 + 1e-12)) + 2
     found = Backward(moves, costs.step, costs.field, goal, costs.with_heading, spent, limit, costs.enter, weights)
     found.run(meter.stop)
     if meter.message:
         return None
+    total = found.first_step(start)[0]
     point, path = _follow(moves, costs, found, start, goal)
-    return found.cost[0], found.first_step(start)[0], point, path
+    return total, point, path, ways.of(found, number)
 
 
 def _spent(

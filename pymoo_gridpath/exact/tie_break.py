@@ -74,7 +74,8 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
         # From here on labels are known by their place in the order of the cells, and those that lead to the ends by their slot.
         labels, parents, n = _leading_to(end[len(paths) :], at_a_time, cell, spent, first, *grid, slot)
         if same_steps:
-            order = np.lexsort(spent[labels].T[::-1])
+            # Each step costs something.
+            order = np.argsort(spent[labels].sum(axis=1), kind="stable")
         else:
             steps = _fewest_steps(parents, slot[start])
             parents[(parents >= 0) & (steps[parents] + 1 != steps[:, None])] = -1
