@@ -5,6 +5,7 @@ import os
 import sys
 
 import matplotlib
+import pytest
 
 matplotlib.use("Agg")
 
@@ -25,3 +26,9 @@ gc.disable()
 def pytest_collection_finish():
     gc.freeze()
     gc.enable()
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Figures are made, and stay empty where they are saved: for tests that do not look at them, but at what is beside them."""
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda figure, *args, **kwargs: None)

@@ -120,11 +120,11 @@ import kernels
 if __name__ == "__main__":
     if "loky" in sys.argv:
         from loky import ProcessPoolExecutor
-        pool = ProcessPoolExecutor(2)
+        pool = ProcessPoolExecutor(1)
     else:
         import multiprocessing
         from concurrent.futures import ProcessPoolExecutor
-        pool = ProcessPoolExecutor(2, multiprocessing.get_context("spawn"))
+        pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"))
     with pool:
         print(sum(pool.map(kernels.four_times, [1, 2, 3, 0.5])))
 """

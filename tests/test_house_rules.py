@@ -8,6 +8,7 @@ purpose, to check the first ones against.
 from __future__ import annotations
 
 import ast
+import functools
 import re
 from collections.abc import Iterator
 from importlib.resources import files
@@ -23,12 +24,22 @@ TREES = {name: ast.parse(path.read_text()) for name, path in MODULES.items() if 
 Found = Iterator[ast.AST]
 
 
+@functools.cache
+def walked(tree: ast.AST) -> list[ast.AST]:
+    return list(ast.walk(tree))
+
+
 def nodes(tree: ast.AST, *kinds: type) -> Iterator:
-    return (node for node in ast.walk(tree) if isinstance(node, kinds))
+    return (node for node in walked(tree) if isinstance(node, kinds))
+
+
+@functools.cache
+def source_of(node: ast.AST) -> str:
+    return ast.unparse(node)
 
 
 def says(node: ast.AST, pattern: str) -> bool:
-    return re.search(pattern, ast.unparse(node)) is not None
+    return re.search(pattern, source_of(node)) is not None
 
 
 def is_number(node: ast.AST | None, *values: float) -> bool:
@@ -282,7 +293,10 @@ def knows_a_planner(tree: ast.AST, name: str, cls: str) -> Found:
         if isinstance(node, ast.Constant):
             if isinstance(node.value, str) and node.value.lower() in (name.lower(), cls.lower()):
                 yield node
-        elif says(node, rf"(^|\.){cls}$"):
+        elif isinstance(node, ast.alias):
+            if cls in (node.name.rpartition(".")[2], node.asname):
+                yield node
+        elif cls == (node.id if isinstance(node, ast.Name) else node.attr):
             yield node
 
 

@@ -11,6 +11,7 @@ from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.nearness import WHOLE
 from pymoo_gridpath.exact.tie_break import smoothest_paths
 from pymoo_gridpath.search import UNREACHABLE, Moves
+from pymoo_gridpath.search.arrays import grown
 from pymoo_gridpath.search.heap import drop_key, push_key
 
 # Cells that are taken from the heap between two looks at the budget.
@@ -96,9 +97,7 @@ def _best(legal, offsets, step, field, enter, start, goal, ahead):
     k = 0
     while k < n:
         if n + 8 > len(closed):
-            larger = np.empty((2 * len(closed), 2), dtype=np.int32)
-            larger[:n] = closed[:n]
-            closed = larger
+            closed = grown(closed)
         cell = np.int64(closed[k, 0])
         if cell != goal:
             for m in range(8):

@@ -18,6 +18,7 @@ from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import TURN_UNITS, Costs
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.search import Moves
+from pymoo_gridpath.search.arrays import grown, room
 
 # More than any path turns.
 _NEVER = np.iinfo(np.int32).max // 2
@@ -172,17 +173,15 @@ def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field
     while n_ends < len(ends) and n < at_a_time:
         end = ends[n_ends]
         n_ends += 1
-        if n == len(labels):
-            labels = _doubled(labels)
+        labels = room(labels, n + 1)
         if slot[end] < 0:
             slot[end] = n
             labels[n] = end
             n += 1
         while i < n:
-            if n + 8 > len(labels):
-                labels = _doubled(labels)
+            labels = room(labels, n + 8)
             if i == len(parents):
-                parents = _doubled(parents)
+                parents = grown(parents)
             _find_parents(labels[i], cell, spent, first, legal, offsets, step, field, enter, parents[i])
             for m in range(8):
                 parent = parents[i, m]
@@ -195,13 +194,6 @@ def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field
                 parents[i, m] = slot[parent]
             i += 1
     return labels[:n].copy(), parents[:n].copy(), n_ends
-
-
-@kernel
-def _doubled(array):
-    larger = np.empty((2 * array.shape[0], *array.shape[1:]), dtype=array.dtype)
-    larger[: array.shape[0]] = array
-    return larger
 
 
 @kernel

@@ -7,7 +7,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.grid import SQRT2
 from pymoo_gridpath.neighbourhood import turn_units
-from pymoo_gridpath.search.route import room
+from pymoo_gridpath.search.arrays import room
 from pymoo_gridpath.search.sequences import append_without_loops, step_heading
 
 #: Where a stretch leads that ends at the goal, or nowhere.

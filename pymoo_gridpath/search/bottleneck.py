@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.search.arrays import grown
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.shortest import grown
 
 
 def best_level(moves: Moves, levels: np.ndarray, start: int, goal: int) -> int:

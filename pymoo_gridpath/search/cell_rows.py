@@ -9,6 +9,7 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
+from pymoo_gridpath.search.arrays import copy
 from pymoo_gridpath.search.route import DX, DY
 from pymoo_gridpath.search.sequences import append_without_loops
 from pymoo_gridpath.search.splice import write
@@ -181,12 +182,13 @@ def _change(terrain, rows, rate, regrow, draws):
         while k < n - 1:
             if draws[0, i, k] < rate:
                 if draws[1, i, k] < regrow:
-                    walk[: k + 1] = path[: k + 1]
                     mark += 1
-                    seen[path[: k + 1]] = mark
+                    for j in range(k + 1):
+                        walk[j] = path[j]
+                        seen[path[j]] = mark
                     longer = _walk(terrain, walk, k + 1, draws[3, i], seen, mark)
                     if longer:
-                        path[:longer] = walk[:longer]
+                        copy(walk, path, longer)
                         n, touched = longer, True
                         break
                 else:
@@ -235,6 +237,6 @@ def _write_row(path, length, place, out, goal, row):
     for k in range(length):
         place[path[k]] = -1
     if n <= len(row):
-        row[:n] = out[:n]
+        copy(out, row, n)
         row[n:] = goal
     return out

@@ -8,10 +8,10 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.grid import SQRT2
+from pymoo_gridpath.search.arrays import grown
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.route import DX, DY
-from pymoo_gridpath.search.shortest import grown
 
 #: Lengths of steps in whole numbers, which order all lengths of paths across up to 10,000 x 10,000 cells correctly.
 STRAIGHT = np.int64(2**32)

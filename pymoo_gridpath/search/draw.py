@@ -6,8 +6,9 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
+from pymoo_gridpath.search.arrays import room
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import NOWHERE, find_route, make_work, room, unwind
+from pymoo_gridpath.search.route import NOWHERE, find_route, make_work, unwind
 from pymoo_gridpath.search.sequences import append_without_loops, mend
 from pymoo_gridpath.search.splice import write
 from pymoo_gridpath.search.terrain import Terrain, backwards

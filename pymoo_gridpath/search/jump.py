@@ -12,10 +12,10 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.neighbourhood import Neighbourhood
+from pymoo_gridpath.search.arrays import grown
 from pymoo_gridpath.search.counted import DIAGONAL, HEURISTICS, STRAIGHT, Found, estimate
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.shortest import grown
 from pymoo_gridpath.search.sight import towards
 
 # The rules by which a jump ends: diagonal steps past an occupied cell, none such, and straight steps alone.

@@ -15,8 +15,9 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid
 from pymoo_gridpath.search.alternatives import GOAL, NOWHERE, measure
+from pymoo_gridpath.search.arrays import room
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import DX, DY, room
+from pymoo_gridpath.search.route import DX, DY
 from pymoo_gridpath.search.sequences import append_without_loops
 from pymoo_gridpath.search.sight import sign_heading, towards
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.search.arrays import grown
 from pymoo_gridpath.search.counted import DIAGONAL, STRAIGHT, back
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.shortest import UNREACHABLE, grown
+from pymoo_gridpath.search.shortest import UNREACHABLE
 
 
 def way_to(moves: Moves, start: int, wanted: np.ndarray) -> np.ndarray:

@@ -8,8 +8,9 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.neighbourhood import HEADINGS
+from pymoo_gridpath.search.arrays import grown, room
 from pymoo_gridpath.search.heap import drop_first, push
-from pymoo_gridpath.search.shortest import UNREACHABLE, grown
+from pymoo_gridpath.search.shortest import UNREACHABLE
 from pymoo_gridpath.search.terrain import Terrain
 
 DX, DY = HEADINGS[:, 0].copy(), HEADINGS[:, 1].copy()
@@ -231,14 +232,3 @@ def downhill(terrain, cell):
             if terrain.bounds[other, 0] + step == terrain.bounds[cell, 0]:
                 return other
     return terrain.goal
-
-
-@kernel
-def room(array: np.ndarray, n) -> np.ndarray:
-    """Return an array with room for ``n`` numbers: itself, or a larger copy."""
-    if n <= len(array):
-        return array
-    larger = np.empty(2 * n, dtype=array.dtype)
-    for i in range(len(array)):
-        larger[i] = array[i]
-    return larger

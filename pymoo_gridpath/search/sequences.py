@@ -6,8 +6,9 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
+from pymoo_gridpath.search.arrays import room
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import descend, downhill, find_route, make_work, room, unwind
+from pymoo_gridpath.search.route import descend, downhill, find_route, make_work, unwind
 from pymoo_gridpath.search.shortest import UNREACHABLE
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, plain_terrain
 

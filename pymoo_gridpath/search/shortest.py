@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
+from pymoo_gridpath.search.arrays import grown
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
 
@@ -250,14 +251,6 @@ def _expand(legal, offsets, step, field, enter, with_heading, spent, limit, cost
                     push(heap, n, total1, total2, origin)
                     n += 1
     return heap, n, n == 0
-
-
-@kernel
-def grown(heap):
-    """Return a copy of a heap with twice the room."""
-    larger = np.empty((2 * heap.shape[0], heap.shape[1]), dtype=heap.dtype)
-    larger[: heap.shape[0]] = heap
-    return larger
 
 
 @kernel

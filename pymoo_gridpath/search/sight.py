@@ -16,6 +16,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.neighbourhood import HEADING_OF
 from pymoo_gridpath.paths.sequences import Sequences
+from pymoo_gridpath.search.arrays import room
 from pymoo_gridpath.search.moves import Moves
 from pymoo_gridpath.search.nearest import Nearest, distance
 from pymoo_gridpath.search.sequences import cut_loops
@@ -254,10 +255,7 @@ def append_line(width, cell, other, path, n):
     x, y = cell % width, cell // width
     dx, dy = other % width - x, other // width - y
     steps = max(abs(dx), abs(dy))
-    if n + steps > len(path):
-        longer = np.empty(2 * (n + steps), dtype=path.dtype)
-        longer[:n] = path[:n]
-        path = longer
+    path = room(path, n + steps)
     for k in range(1, steps + 1):
         path[n] = (y + (2 * k * dy + steps) // (2 * steps)) * width + x + (2 * k * dx + steps) // (2 * steps)
         n += 1

@@ -6,7 +6,8 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
-from pymoo_gridpath.search.route import find_route, make_work, room, unwind
+from pymoo_gridpath.search.arrays import room
+from pymoo_gridpath.search.route import find_route, make_work, unwind
 from pymoo_gridpath.search.sequences import append_without_loops
 from pymoo_gridpath.search.terrain import Terrain
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
-from pymoo_gridpath.search.route import DX, DY, find_route, last_reached, make_work, room, unwind
+from pymoo_gridpath.search.arrays import room
+from pymoo_gridpath.search.route import DX, DY, find_route, last_reached, make_work, unwind
 from pymoo_gridpath.search.sequences import append_without_loops, heading_between
 from pymoo_gridpath.search.splice import write
 from pymoo_gridpath.search.terrain import Terrain

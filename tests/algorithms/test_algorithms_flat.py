@@ -98,7 +98,7 @@ def test_every_algorithm_on_flat_problems(name, kind, obstacles):
     algorithm = make_algorithm(name, problem, 12, **arguments_of(row, problem.n_obj))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        result = minimize(problem, algorithm, ("n_gen", 6), seed=1)
+        result = minimize(problem, algorithm, ("n_gen", 4), seed=1)
     assert result.F is not None and np.isfinite(result.F).all()
     assert not_numbers(result.algorithm) == []
 

@@ -155,6 +155,7 @@ def test_by_name_it_refuses_in_words(options, given, said):
         minimize(problem, make_algorithm("variable_length_ga", problem, **given), ("n_gen", 2))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_it_works_on_the_command_line_and_in_studies(tmp_path, capsys):
     plan = ["plan", "office", "--algorithm", "variable_length_ga", "--objectives", "length", "--generations", "2"]
     assert main([*plan, "-o", str(tmp_path / "plan")]) == 0

@@ -1,6 +1,5 @@
 """The command line as a user meets it: its output, files and exit codes, in real processes where that matters."""
 
-import contextlib
 import csv
 import io
 import json
@@ -9,32 +8,13 @@ import signal
 import subprocess
 import sys
 import time
-from unittest import mock
 
 import pytest
-from matplotlib.figure import Figure
+from command_lines import FAST, run, run_process
 
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
 from pymoo_gridpath.progress import COMPILING, Progress
-
-FAST = ["--pop-size", "30", "--generations", "10"]
-
-
-def run_process(*arguments, cwd=None, **options):
-    command = [sys.executable, "-m", "pymoo_gridpath.cli", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False, **options)
-
-
-def run(*arguments):
-    """What a process would do, without the seconds that it takes to start and to draw: figures are empty."""
-    with (
-        contextlib.redirect_stdout(io.StringIO()) as out,
-        contextlib.redirect_stderr(io.StringIO()) as err,
-        mock.patch.object(Figure, "savefig", lambda figure, *args, **kwargs: None),
-    ):
-        status = main([str(argument) for argument in arguments])
-    return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())
 
 
 def without_compiling(stderr):
@@ -42,16 +22,10 @@ def without_compiling(stderr):
     return stderr.removeprefix(f"{COMPILING}\n")
 
 
-@pytest.fixture
-def free_map(tmp_path):
-    path = tmp_path / "room.txt"
-    path.write_text("......\n..##..\n......\n......\n")
-    return path
-
-
 def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
     out = tmp_path / "out"
-    done = run_process("plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "--seed", "4", "-o", out)
+    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "--seed", "4", "-o"]
+    done = run_process(*arguments, out)
     assert done.returncode == 0, done.stderr
     assert without_compiling(done.stderr) == "", "progress must be silent in a pipe"
     assert "shortest" in done.stdout and "vulnerability" in done.stdout
@@ -69,15 +43,9 @@ def test_plan_writes_figures_and_files_and_prints_the_table(tmp_path, free_map):
     shortest = load_map(free_map).shortest_lengths((0, 0))[3, 5]
     assert f"shortest of all paths on this grid has length {shortest:.3f}\n" in done.stdout
     assert min(path["length"] for path in paths) >= shortest - 1e-9
-
-
-def test_same_seed_writes_the_same_paths(tmp_path, free_map):
-    arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST]
-    contents = []
-    for name, how in (("a", run), ("b", run_process)):
-        assert how(*arguments, "-o", tmp_path / name).returncode == 0
-        contents.append((tmp_path / name / "paths.csv").read_bytes())
-    assert contents[0] == contents[1]
+    # The same seed writes the same paths, in another process too.
+    assert run(*arguments, tmp_path / "again").returncode == 0
+    assert (tmp_path / "again" / "paths.csv").read_bytes() == (out / "paths.csv").read_bytes()
 
 
 def test_plan_without_a_map_finds_legal_paths_on_a_shipped_one(tmp_path):
@@ -128,6 +96,7 @@ def test_plan_finds_paths_that_turn_back(tmp_path):
     ("options", "representation"),
     [([], "cells"), (["--corner-cutting"], "integer"), (["--axis", "x"], "integer"), (["--representation", "mixed"], "mixed")],
 )
+@pytest.mark.usefixtures("undrawn")
 def test_paths_may_turn_back_but_in_the_papers_world(tmp_path, free_map, options, representation):
     arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", *FAST, "-o", tmp_path / "out", *options]
     assert main([*map(str, arguments)]) == 0
@@ -141,6 +110,7 @@ def test_paths_may_turn_back_but_in_the_papers_world(tmp_path, free_map, options
         (["--one-side"], ("one side", 8), "corners may be cut on one side"),
     ],
 )
+@pytest.mark.usefixtures("undrawn")
 def test_steps_are_an_option_of_maps(tmp_path, free_map, capsys, options, steps, words):
     arguments = ["plan", free_map, "--start", "0,0", "--goal", "5,3", "--algorithm", "exact", "-o", tmp_path / "out", *options]
     assert main([*map(str, arguments)]) == 0
@@ -150,6 +120,7 @@ def test_steps_are_an_option_of_maps(tmp_path, free_map, capsys, options, steps,
     assert words in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_plan_may_be_content_with_a_front_that_is_near(tmp_path, capsys):
     assert main(["plan", "paper16", "--algorithm", "exact", "--epsilon", "5%", "-o", str(tmp_path)]) == 0
     assert "% of the front\n" in capsys.readouterr().out
@@ -238,6 +209,7 @@ def test_plan_with_one_objective(tmp_path, free_map):
     assert "shortest" in done.stdout
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_paths_that_are_much_too_long_are_remarked_on_once(tmp_path, capsys):
     # The short way is past the top of the wall, one column back; the way that never turns back is past its foot.
     path = tmp_path / "wall.txt"
@@ -474,47 +446,3 @@ def test_progress_appears_on_a_real_terminal(tmp_path, free_map):
     shown = os.read(master, 100_000).decode()
     os.close(master)
     assert "generation" in shown and "legal paths" in shown
-
-
-# -- pages to choose from -----------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def planned(tmp_path_factory):
-    """A plan with its page."""
-    folder = tmp_path_factory.mktemp("planned")
-    done = run("plan", "office", *FAST, "-o", folder / "out", "--html", folder / "front.html", "--show")
-    assert done.returncode == 0, done.stderr
-    return folder, done
-
-
-def test_plan_writes_a_page(planned):
-    folder, done = planned
-    assert done.stdout.splitlines()[-1] == f"page: {folder / 'front.html'}"
-    page = (folder / "front.html").read_text(encoding="utf-8")
-    assert page.startswith("<!DOCTYPE html>") and "<title>office</title>" in page
-    assert not set(done.stdout) & set("\u2580\u2584\u2588"), "no terminal, no map"
-
-
-def test_explore_makes_the_same_page_of_the_stored_paths(planned, tmp_path):
-    folder, _ = planned
-    done = run("explore", folder / "out" / "paths.json", "--show")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == f"page: {folder / 'out' / 'paths.html'}\n"
-    assert (folder / "out" / "paths.html").read_bytes() == (folder / "front.html").read_bytes()
-    done = run("explore", folder / "out" / "paths.json", "-o", tmp_path / "mine.html", "--title", "<Mine>")
-    assert done.returncode == 0 and "<title>&lt;Mine&gt;</title>" in (tmp_path / "mine.html").read_text(encoding="utf-8")
-
-
-def test_explore_refuses_what_is_no_set_of_paths(tmp_path, free_map):
-    done = run("explore", free_map)
-    assert done.returncode == 2 and "the file is not JSON" in done.stderr and done.stderr.count("\n") == 1
-    done = run("explore", tmp_path / "none.json")
-    assert done.returncode == 2 and "cannot be read" in done.stderr
-
-
-@pytest.mark.parametrize("place", ["", ".", "no/such/folder/front.html"])
-def test_a_page_that_cannot_be_written_is_refused_before_the_search(place):
-    with pytest.raises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as err:
-        main(["plan", "--html", place])
-    assert ended.value.code == 2 and "is not a file in a folder that exists" in err.getvalue()

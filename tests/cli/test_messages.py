@@ -29,6 +29,7 @@ def test_control_characters_are_shown_escaped():
 
 
 @pytest.mark.parametrize("command", [["info"], ["plan", *FAST]])
+@pytest.mark.usefixtures("undrawn")
 def test_names_of_maps_are_printed_escaped(tmp_path, capsys, command):
     path = tmp_path / "map.txt"
     path.write_text(f"name: {TERMINAL}\n{ROOM}", encoding="utf-8")
@@ -159,6 +160,7 @@ def test_a_radius_without_effect_is_said_by_plan_and_study(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("fate", ["removed", "changed"])
+@pytest.mark.usefixtures("undrawn")
 def test_a_map_that_goes_while_the_search_runs_loses_nothing(tmp_path, capsys, monkeypatch, fate):
     path = tmp_path / "map.txt"
     path.write_text(ROOM)

@@ -116,6 +116,7 @@ def test_a_footprint_is_planned_for_and_remembered(hall, text):
 
 
 @pytest.mark.parametrize("options", [["--start", "3,3", "--goal", "3,3"], ["--start", "3,3", "--goal-m", "same"]])
+@pytest.mark.usefixtures("undrawn")
 def test_a_robot_that_is_there_gets_files_of_one_pose(hall, options, capsys):
     options = [metres(hall, (3, 3)) if option == "same" else option for option in options]
     out, page = hall.parent / "out", hall.parent / "page.html"

@@ -128,6 +128,7 @@ def test_searches_find_what_is_wide():
         assert hypervolume_ratio(result.F, problem.pareto_front(max_seconds=60)) > 0.95
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_line_plans_by_it(tmp_path, capsys):
     (tmp_path / "room.txt").write_text("\n".join("".join(".#"[int(cell)] for cell in row) for row in WALL[::-1]) + "\n")
     arguments = [

@@ -98,8 +98,8 @@ def test_the_front_equals_enumeration_on_500_grids(solvable_seeds, part):
         problem = make_problem(case, ("length",))
         sets, fields = objectives_of(problem.grid, seed)
         measures = scores(enumerate_paths(problem.grid, problem.start, problem.goal, headings_of(problem)), fields)
-        # Half of them, the others on the next grid.
-        for objectives in sets[seed % 2 :: 2]:
+        # A third of them, the others on the next two grids.
+        for objectives in sets[seed % 3 :: 3]:
             problem = make_problem(case, objectives)
             found, expected = exact_front(problem), front_of(measures, problem.objective_names)
             assert found.complete

@@ -125,9 +125,10 @@ def rounded_front(measures, names):
 @pytest.mark.parametrize("part", range(10))
 def test_fronts_of_costs_of_moves_equal_enumeration_on_500_grids(part):
     sizes = []
-    for seed, grid, start, goal, _, paths in queries_of(part, 10, N_GRIDS // 10):
+    for number, (seed, grid, start, goal, _, paths) in enumerate(queries_of(part, 10, N_GRIDS // 10)):
         coding = CellSequence(grid, start, goal, max_cells=int((~grid.occupied).sum()))
-        for objectives in kinds_of(grid, seed):
+        # Half of them, the others on the next grid.
+        for objectives in kinds_of(grid, seed)[number % 2 :: 2]:
             problem = GridPathProblem(grid, start, goal, coding, objectives)
             measures = measures_of(paths, objectives)
             found, expected = exact_front(problem), rounded_front(measures, problem.objective_names)

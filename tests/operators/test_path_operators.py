@@ -356,7 +356,7 @@ def test_algorithms_take_path_operators(row, name):
 
         result = solve()
         assert all(result.algorithm.callback.legal)
-        if row.reproducible:
+        if row.reproducible and p0 == 0.3:
             assert np.array_equal(result.pop.get("X"), solve().pop.get("X"))
 
 

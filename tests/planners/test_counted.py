@@ -320,6 +320,7 @@ def test_wrong_arguments_are_refused():
         Dijkstra(heuristic="octile")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_line_and_studies_know_them(tmp_path, capsys):
     assert main(["plan", "office", "--algorithm", "jps", "-o", str(tmp_path / "plan")]) == 0
     assert "shortest" in capsys.readouterr().out

@@ -197,6 +197,7 @@ def test_wrong_arguments_are_refused(given, said):
         QuadrantSelection(**given)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_it_works_by_name(tmp_path, capsys):
     problem = GridPathProblem(load_map("office"), (3, 4), (56, 35))
     assert minimize(problem, make_algorithm("QSA", problem, alternatives=2)).success

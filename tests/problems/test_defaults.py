@@ -51,6 +51,7 @@ def office(**options):
         (True, "x", "integer"),
     ],
 )
+@pytest.mark.usefixtures("undrawn")
 def test_python_command_line_and_study_have_one_default(corner_cutting, axis, expected, tmp_path, capsys):
     grid = OccupancyGrid(np.zeros((5, 6)), corner_cutting=corner_cutting)
     assert GridPathProblem(grid, (0, 0), (5, 4), axis=axis).representation.name == expected

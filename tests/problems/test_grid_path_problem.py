@@ -303,10 +303,10 @@ def test_random_dense_grids_hold_a_path_and_the_density(size, p0):
         assert grid == random_dense_grid(size, p0, seed)
         problem = GridPathProblem(grid, (0, 0), (size - 1, size - 1))  # raises where no monotone path exists
         assert problem.representation.frame.admits_path()
-    cells = size**2 - np.mean([random_dense_grid(size, 1.0, s).n_occupied for s in range(200)])
+    cells = size**2 - np.mean([random_dense_grid(size, 1.0, s).n_occupied for s in range(100)])
     # Cells of the free path: one a column and the further cells of its climbs.
     assert 1.3 * size < cells < 1.7 * size
-    share = np.mean([random_dense_grid(size, p0, s).n_occupied for s in range(200)]) / (size**2 - cells)
+    share = np.mean([random_dense_grid(size, p0, s).n_occupied for s in range(100)]) / (size**2 - cells)
     assert share == pytest.approx(p0, abs=0.02)
 
 

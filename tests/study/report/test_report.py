@@ -196,6 +196,7 @@ def test_a_real_study_has_a_report(done, tmp_path):
             assert int(row["evaluations_to_target"]) in history.evaluations
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_each_merged_front_has_a_page_to_choose_from(done, tmp_path):
     files = write_report(done.folder, output=tmp_path, formats=())
     index, markdown, _ = texts(tmp_path)
@@ -233,6 +234,7 @@ def test_each_merged_front_has_a_page_to_choose_from(done, tmp_path):
     assert (tmp_path / links[0]).read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_pages_know_the_robot_and_where_the_map_lies(tmp_path):
     occupied = np.zeros((10, 12), dtype=bool)
     occupied[4:6, 5] = True

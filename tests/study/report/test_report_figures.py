@@ -70,7 +70,7 @@ def overlaps(figure, least=8):
 
 def test_labels_of_many_algorithms_do_not_overlap(tmp_path):
     names = [f"algorithm with long name {k}, and more of it" for k in range(8)]
-    plan = made.make_plan({f"problem-{k} of many": 1 for k in range(12)}, names, 2)
+    plan = made.make_plan({f"problem-{k} of many": 1 for k in range(9)}, names, 2)
     results = collect(made.fill(tmp_path, plan, n_records=4, n_points=5))
     styles = algorithm_styles(names, [False] * 8)
     assert len({(style.color, style.marker) for style in styles}) == 8
@@ -78,7 +78,7 @@ def test_labels_of_many_algorithms_do_not_overlap(tmp_path):
     close = friedman(np.tile(np.arange(8.0), (60, 1)))
     with report_style():
         assert overlaps(plot_ratios(results, results.groups, styles)) == []
-        assert overlaps(plot_convergence(results, range(12), styles)) == []
+        assert overlaps(plot_convergence(results, range(9), styles)) == []
         assert overlaps(plot_ranks(ranks, names)) == []
         assert overlaps(plot_ranks(close, names)) == []
         assert overlaps(plot_fronts(results, 0, styles)) == []

@@ -36,6 +36,7 @@ def test_reports_without_times_do_not_depend_on_them(tmp_path):
     assert "seconds" not in (tmp_path / "one-report" / "runs.csv").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_without_exact_fronts_the_merged_ones_serve_and_are_named(tmp_path):
     plan = made.make_plan({"g": 1}, ["a", "b"], n_seeds=4, reference=False)
     store = made.fill(tmp_path, plan, n_records=6, n_points=6)
@@ -51,6 +52,7 @@ def test_without_exact_fronts_the_merged_ones_serve_and_are_named(tmp_path):
 
 
 @pytest.mark.parametrize("change", ["incomplete", "failed", "skip"])
+@pytest.mark.usefixtures("undrawn")
 def test_an_exact_front_that_is_not_whole_does_not_serve(tmp_path, change):
     plan = made.make_plan({"g": 2}, ["a", "exact"], n_seeds=3)
     made.fill(tmp_path, plan, n_records=6, n_points=6, **{change: [plan.problems[0].reference]})
@@ -64,6 +66,7 @@ def test_an_exact_front_that_is_not_whole_does_not_serve(tmp_path, change):
     assert "Problems without an exact front" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_exact_front_among_the_algorithms_serves_where_no_other_is_wanted(tmp_path):
     plan = made.make_plan({"g": 2}, ["a", "exact"], n_seeds=3, reference=False)
     exact = [run for run in plan.runs if run.algorithm == 1]
@@ -106,6 +109,7 @@ def test_a_longer_exact_search_among_the_algorithms_serves_where_the_wanted_one_
     assert results.references[0].front.exact and len(results.references[0].front) == len(store.read(longer.key).F)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_runs_that_are_but_a_reference_are_counted_apart(tmp_path):
     plan = made.make_plan({"g": 3}, ["a", "b"], n_seeds=2)
     references = [problem.reference for problem in plan.problems]
@@ -116,6 +120,7 @@ def test_runs_that_are_but_a_reference_are_counted_apart(tmp_path):
     assert sentence in page and sentence in markdown.replace("\\", "")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_points_beyond_the_exact_front_are_reported(tmp_path):
     plan = made.make_plan({"g": 1}, ["a"], n_seeds=2)
     store = made.fill(tmp_path, plan, n_records=6, n_points=6)
@@ -198,6 +203,7 @@ def test_a_folder_without_a_study_is_refused(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_figures_of_an_earlier_report_go_and_other_files_stay(tmp_path):
     plan = made.make_plan({"g": 1}, ["a"], 1)
     made.fill(tmp_path, plan, n_records=4, n_points=5)
@@ -214,6 +220,7 @@ def test_figures_of_an_earlier_report_go_and_other_files_stay(tmp_path):
     assert "fronts-g.svg" in texts(tmp_path / "report")[1]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_no_figure_goes_that_only_another_text_links(tmp_path):
     plan = made.make_plan({"](figures/fronts-b.png)": 1}, ["a", "](figures/fronts-c.png)"], 2)
     made.fill(tmp_path, plan, n_records=4, n_points=5)
@@ -228,6 +235,7 @@ def test_no_figure_goes_that_only_another_text_links(tmp_path):
         assert {path.name for path in figures.iterdir()} == own
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_groups_may_be_called_like_parts_of_the_report(tmp_path):
     groups = {"Settings": 1, "Overview": 1, "all": 2, "Settings-2": 1}
     plan = made.make_plan(groups, ["a", "b", "c"], 2)
@@ -241,6 +249,7 @@ def test_groups_may_be_called_like_parts_of_the_report(tmp_path):
     assert len(set(files)) == len(files)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_shows_the_study_file_as_it_was(tmp_path):
     text = 'name = "<b>"\n\n# a & b, `c`\n[[problems]]\nmap = "office.map"\nradius = 0.25\n'
     plan = made.make_plan({"g": 1}, ["a", "b"], n_seeds=2)
@@ -263,6 +272,7 @@ def test_the_gist_of_a_traceback_is_its_last_line():
     assert gist("out of time\nmore") == "out of time" and gist("") == ""
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_certified_of_exact_fronts_stands_in_the_tables(tmp_path):
     problem = ProblemSpec(grid=random_dense_grid(40, 0.2, 3), start=(0, 0), goal=(39, 39), representation="cells")
     near = {"algorithm": "exact", "name": "near", "parameters": {"epsilon": 0.05}}

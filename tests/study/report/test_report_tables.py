@@ -98,6 +98,7 @@ def test_latex_compiles_whatever_the_names(tmp_path):
     assert tables.count(r"\begin{table}") > 10 and "Overfull" not in log and "Missing" not in log
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_table_too_long_for_a_page_is_not_among_those_in_latex(tmp_path):
     plan = made.make_plan({"g": 1}, [f"a{k}" for k in range(12)], 2)
     made.fill(tmp_path, plan, n_records=4, n_points=5)

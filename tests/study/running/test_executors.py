@@ -55,7 +55,7 @@ def test_another_executor_is_used_as_it_is(plan, done, tmp_path):
 
 
 def test_loky_carries_out_a_study(plan, done, tmp_path):
-    with loky.ProcessPoolExecutor(2) as executor:
+    with loky.ProcessPoolExecutor(1) as executor:
         run_study(plan, tmp_path, executor)
     same_runs(plan, done, Store(tmp_path))
 
@@ -98,7 +98,7 @@ def test_the_number_of_processes_is_checked(number):
 
 
 def test_a_worker_that_is_killed_takes_no_run_with_it(tmp_path, pair):
-    longer = make_plan(generations=40)
+    longer = make_plan(n_seeds=1, generations=40)
     before = pair.submit(os.getpid).result()
 
     def kill():
@@ -197,7 +197,7 @@ def killed_at_once(monkeypatch):
 @pytest.mark.parametrize("when", ["started", "handed what they need"])
 def test_workers_that_are_killed_while_they_start_are_started_again(plan, done, tmp_path, killed_at_once, when):
     left = killed_at_once(2, when)
-    with LocalProcesses(2) as executor:
+    with LocalProcesses(1) as executor:
         outcome = run_study(plan, tmp_path, executor)
     assert (outcome.n_run, outcome.n_failed, outcome.messages) == (len(plan.runs), 0, [])
     assert left[0] < 0
@@ -331,7 +331,7 @@ def children(process) -> list[psutil.Process]:
 def test_a_dask_cluster(plan, done, tmp_path):
     """One cluster for all, since starting one takes longer than the rest: each loss is worse than the one before."""
     pytest.importorskip("distributed")
-    longer, longest = make_plan(generations=60), make_plan(n_seeds=3, generations=61)
+    longer, longest = make_plan(n_seeds=1, generations=60), make_plan(n_seeds=3, generations=61)
     without = str(blocking(tmp_path))
     # The scheduler has no need of this package.
     with Cluster(tmp_path, PYTHONPATH=without, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="1") as cluster:
@@ -362,8 +362,8 @@ def test_a_dask_cluster(plan, done, tmp_path):
                 meanwhile(tmp_path / "late", lambda: late.append(cluster.worker("--no-nanny", PYTHONPATH=without))),
                 pytest.raises(GridPathError, match=r"the Dask worker tcp://.* cannot import pymoo_gridpath"),
             ):
-                for number in range(20):
-                    run_study(make_plan(generations=60 + number), tmp_path / "late", executor)
+                for number in range(40):
+                    run_study(make_plan(n_seeds=1, generations=60 + number), tmp_path / "late", executor)
             stored_late = Store(tmp_path / "late").check(stored(tmp_path / "late"))
             assert not stored_late.failed and len(stored_late.meta) >= 3
             late[0].kill()
