@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import os
 import threading
@@ -26,6 +27,9 @@ _CGROUPS = (
         b"total_inactive_file",
     ),
 )
+
+# So many are there, or nothing would run: to ask how many are free takes a good part of the time of a small search.
+_FEW_BYTES = 2**23
 
 # No machine has more bytes.
 _MOST_MEMORY = 2**62
@@ -115,7 +119,7 @@ class Meter:
         self.begin = working_seconds()
         self.seconds = math.inf if budget.max_seconds is None else budget.max_seconds
         self.labels = _MOST_LABELS if budget.max_labels is None else min(budget.max_labels, _MOST_LABELS)
-        self.memory = _SHARE * free_memory() if budget.max_memory is None else min(budget.max_memory, _MOST_MEMORY)
+        self._most_memory = budget.max_memory
         self.watch = budget.watch
         self.message = ""
         self.n_fixed = self.n_labels = self.n_bytes = 0
@@ -125,6 +129,15 @@ class Meter:
     def elapsed(self) -> float:
         """Seconds since the search began, without those of compiling."""
         return working_seconds() - self.begin
+
+    @functools.cached_property
+    def memory(self) -> float:
+        """Bytes of all arrays of the search at most."""
+        return _SHARE * free_memory() if self._most_memory is None else min(self._most_memory, _MOST_MEMORY)
+
+    def has_room(self, n_bytes: float) -> bool:
+        """Whether the search may take so many bytes, those of ``n_fixed`` among them."""
+        return (self._most_memory is None and n_bytes < _FEW_BYTES) or n_bytes < self.memory
 
     def pops(self, n_labels: int, at_most: int) -> int:
         """Return how many labels may be popped before the next check; each opens up to eight others."""
@@ -141,7 +154,7 @@ class Meter:
             return
         if n_labels >= self.labels:
             self.message = f"the budget of {self.labels:,} labels is used up"
-        elif self.n_fixed + n_bytes >= self.memory:
+        elif not self.has_room(self.n_fixed + n_bytes):
             self.message = f"the memory budget of {self.memory / 2**20:.3g} MiB is used up"
 
     def stop(self) -> bool:

@@ -277,7 +277,8 @@ def _affordable(n_weights: int, bounds: np.ndarray, costs: Costs, meter: Meter, 
     share = 0.9 if allowance.name else 0.5
     # Before it is known that a label search will come, sums and headings alone are kept.
     each = n_states * (WAY_KEPT if allowance.name else WAY)
-    n_weights = max(0, min(n_weights, int((share * meter.memory - base) // each)))
+    if not meter.has_room((base + each * n_weights) / share):
+        n_weights = max(0, min(n_weights, int((share * meter.memory - base) // each)))
     meter.n_fixed = base + each * max(n_weights, 1)
     return n_weights
 

@@ -59,7 +59,7 @@ def smoothest_paths(moves: Moves, costs: Costs, closed: np.ndarray, ends: np.nda
     same_steps = costs.tells_steps
     of_closed = _BYTES_OF_CLOSED + 8 * len(costs.step)
     of_leading = _BYTES_OF_LEADING + (0 if same_steps else _BYTES_OF_STEPS)
-    if meter.n_fixed + len(closed) * (of_closed + of_leading) >= meter.memory:
+    if not meter.has_room(meter.n_fixed + len(closed) * (of_closed + of_leading)):
         return traced_paths(closed, ends)
     first, place = _grouped(closed, moves.n_cells)
     cell, spent = _spent(closed, place, moves.width, HEADING_OF, costs.step, costs.field, costs.enter)

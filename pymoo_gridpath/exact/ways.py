@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
@@ -9,7 +11,8 @@ from pymoo_gridpath.exact.costs import Costs
 from pymoo_gridpath.exact.labels import Front
 from pymoo_gridpath.exact.staircase import Staircase, lower
 from pymoo_gridpath.search import UNREACHABLE, Moves
-from pymoo_gridpath.search.shortest import Backward, grown
+from pymoo_gridpath.search.arrays import grown
+from pymoo_gridpath.search.shortest import Backward
 
 # Factors by which a number becomes no larger, or no smaller, in single precision, which rounds by half as much at most.
 _DOWN, _UP = 1.0 - 2.0**-23, 1.0 + 2.0**-23
@@ -110,7 +113,7 @@ class Ways:
 
     def _join(self, rows: np.ndarray, column: int) -> None:
         stairs = self.staircase.least, self.staircase.low, self.staircase.shift
-        joined = join(self._states, self._spent, rows, *stairs)
+        joined: Any = join(self._states, self._spent, rows, *stairs)
         joined[:, 1] += column
         self._joined.append(joined)
 
