@@ -67,10 +67,12 @@ def draw_all(settings: Settings, found: dict[str, Runs], truth: ReferenceFront) 
     """Draw the fronts of all runs beside the exact one."""
     with figure_style(None):
         ax = new_axes((4.4, 3.3))
-        for (name, runs), look in zip(found.items(), LOOKS, strict=False):
+        # Those of the later codings are rings around those of the first, since many points are the same.
+        for k, ((name, runs), look) in enumerate(zip(found.items(), LOOKS, strict=False)):
             legal = [one.F for one in runs.each if one.feasible]
             if legal:
-                ax.plot(*np.concatenate(legal).T, look.marker, color=look.color, markersize=3, label=name)
+                points, fill = np.concatenate(legal), "none" if k else "full"
+                ax.plot(*points.T, look.marker, color=look.color, markersize=3 + 2 * k, fillstyle=fill, label=name)
         ax.plot(*staircase(truth.points).T, "k-", linewidth=0.8, label="exact front")
         ax.set(xlabel="Path length [cells]", ylabel="Path vulnerability")
         ax.legend()
