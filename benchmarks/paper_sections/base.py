@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -21,11 +20,15 @@ from pymoo_gridpath import OccupancyGrid
 from pymoo_gridpath.algorithms import FirstLegalPath, Setup, ahmed_deb_2013, minimize_runs
 from pymoo_gridpath.decision import TradeOffSet
 from pymoo_gridpath.plotting import plot_front, plot_map, plot_paths
+from pymoo_gridpath.plotting.style import NAME_STYLES, figure_style
 from pymoo_gridpath.problems import random_dense_grid
 from pymoo_gridpath.quality import ReferenceFront
 
 #: The paper's two objectives, and each alone.
 TWO, LENGTH, VULNERABILITY = ("length", "vulnerability"), ("length",), ("vulnerability",)
+
+#: How lines that have no names of paths are drawn: the first solid, the next dotted over it.
+LOOKS = [NAME_STYLES[name] for name in ("shortest", "smoothest", "safest", "knee")]
 
 
 @dataclass(frozen=True)
@@ -227,9 +230,10 @@ def draw_map(settings: Settings, name: str, grid: OccupancyGrid, paths: Mapping[
         return
     _, start, goal = corners(grid)
     ax = plot_map(grid, start=start, goal=goal, legend=False)
-    for (label, cells), line in zip(paths.items(), itertools.cycle(("-", ":", "--", "-."))):
-        ax.plot(*cells.T, line, label=label)
-    ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
+    with figure_style(ax):
+        for (label, cells), look in zip(paths.items(), LOOKS, strict=False):
+            ax.plot(*cells.T, color=look.color, linestyle=look.dashes, linewidth=1.6, label=label, zorder=4)
+        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, handlelength=3)
     settings.save(ax, name)
 
 

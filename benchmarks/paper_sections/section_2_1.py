@@ -45,5 +45,5 @@ def run(settings: Settings) -> None:
     for name, bits in PATHS.items():
         X = np.array([[bit == "1" for bit in bits if bit in "01"]])
         paths = {coding: make_representation(coding, *corners(grid)).decode(X) for coding in ("binary", "sugihara-smith")}
-        labels = {f"{name} in the coding {coding!r}": path.cells(0) for coding, path in paths.items()}
+        labels = {f"{name}, {coding}": path.cells(0) for coding, path in paths.items()}
         draw_map(settings, f"section-2.1-figure-2-{name.lower().replace(' ', '-')}", grid, labels)

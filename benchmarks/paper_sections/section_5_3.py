@@ -5,7 +5,11 @@ The tests are those of Mann and Whitney, over the runs.
 
 from __future__ import annotations
 
+import numpy as np
+
 from paper_sections.base import (
+    LOOKS,
+    Runs,
     Settings,
     draw_set,
     exact,
@@ -15,7 +19,9 @@ from paper_sections.base import (
     several,
     show,
 )
-from pymoo_gridpath.plotting.style import new_axes
+from pymoo_gridpath.plotting.fronts import staircase
+from pymoo_gridpath.plotting.style import figure_style, fix_ticks, new_axes
+from pymoo_gridpath.quality import ReferenceFront
 from pymoo_gridpath.study.report.statistics.significance import mann_whitney
 
 CODINGS = {"integer": "clearly better", "mixed": "between", "binary": "consistently poor"}
@@ -53,12 +59,22 @@ def run(settings: Settings) -> None:
         rows,
     )
     if settings.output:
-        ax = new_axes((5.0, 4.0))
-        for (name, runs), marker in zip(found.items(), "o^s", strict=True):
-            for k, one in enumerate(one for one in runs.each if one.feasible):
-                ax.plot(*one.F.T, marker, color=f"C{'o^s'.index(marker)}", markersize=3, label=name if k == 0 else None)
-        ax.plot(*truth.points.T, "k-", linewidth=0.8, label="exact front")
-        ax.set(xlabel="length [cells]", ylabel="vulnerability")
-        ax.legend()
-        settings.save(ax, "section-5.3-figure-3")
+        draw_all(settings, found, truth)
     draw_set(settings, "section-5.3-figure-4", found["integer"].merged, truth)
+
+
+def draw_all(settings: Settings, found: dict[str, Runs], truth: ReferenceFront) -> None:
+    """Draw the fronts of all runs beside the exact one."""
+    with figure_style(None):
+        ax = new_axes((4.4, 3.3))
+        # Those of the later codings are rings around those of the first, since many points are the same.
+        for k, ((name, runs), look) in enumerate(zip(found.items(), LOOKS, strict=False)):
+            legal = [one.F for one in runs.each if one.feasible]
+            if legal:
+                points, fill = np.concatenate(legal), "none" if k else "full"
+                ax.plot(*points.T, look.marker, color=look.color, markersize=3 + 2 * k, fillstyle=fill, label=name)
+        ax.plot(*staircase(truth.points).T, "k-", linewidth=0.8, label="exact front")
+        ax.set(xlabel="Path length [cells]", ylabel="Path vulnerability")
+        ax.legend()
+        fix_ticks(ax)
+    settings.save(ax, "section-5.3-figure-3")

@@ -99,5 +99,5 @@ def dense(settings: Settings) -> None:
         rows,
     )
     names = [name for name, _, obstacles, _ in METHODS if obstacles == "constraint"]
-    paths = {f"{name}: crosses {found[name][0].crossed} obstacles": found[name][0].cells for name in names}
+    paths = {f"{name}:\ncrosses {found[name][0].crossed} obstacles": found[name][0].cells for name in names}
     draw_map(settings, "section-5.5-figure-7b", grids[0], paths)

@@ -13,6 +13,7 @@ from scipy import stats
 from paper_sections.base import LENGTH, TWO, Runs, Settings, draw_map, exact, median, progress, several, share, show
 from pymoo_gridpath.decision import TradeOffSet
 from pymoo_gridpath.plotting import plot_front
+from pymoo_gridpath.plotting.style import figure_style
 from pymoo_gridpath.quality import ReferenceFront
 
 THREE = (*TWO, "turn")
@@ -66,7 +67,12 @@ def draw(settings: Settings, name: str, found: dict[tuple, Runs], truth: Referen
         return
     settings.save(plot_front(three), f"{name}-figure-8a")
     ax = plot_front(three, objectives=TWO)
-    ax.plot(*truth.points.T, "k.", label="exact front of two objectives")
-    ax.legend()
+    with figure_style(ax):
+        ax.plot(*truth.points.T, "k+", markersize=6, label="exact front of two objectives", zorder=5)
+        # What is named is labelled at its point.
+        handles = [
+            one for one in (*ax.collections, *ax.lines) if one.get_label() in ("trade-off paths", ax.lines[-1].get_label())
+        ]
+        ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     settings.save(ax, f"{name}-figure-8b")
     draw_map(settings, f"{name}-figure-9", three.problem.grid, {"path H, the smoothest": three.smoothest.cells})

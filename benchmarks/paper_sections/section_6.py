@@ -59,7 +59,7 @@ def large(settings: Settings) -> None:
         rows.append((grids[0].name, grids[0].n_occupied, published, share(len(found), len(runs)), generations, fewest))
         progress(*rows[-1])
         best = min(range(len(runs)), key=lambda k: runs[k].crossed)
-        label = f"crosses {runs[best].crossed} obstacles after {runs[best].generations} generations"
+        label = f"crosses {runs[best].crossed} obstacles\nafter {runs[best].generations} generations"
         draw_map(settings, f"section-6-figure-11-{side}", grids[best], {label: runs[best].cells})
     show(
         "the paper's method, a scenario for each run",
