@@ -24,6 +24,12 @@ from pymoo_gridpath.search.shortest import Backward
 # let run, where a search takes long enough.
 _SIDE_BY_SIDE, _CELLS_WORTH_THREADS = 2, 2**16
 
+#: Weighted sums that are minimised in any case, as far as there are gaps to divide.
+LEAST_WEIGHTS = 12
+
+# And more where the front has many points, about as many as the staircase has steps: so many for each of them.
+_STEPS_PER_WEIGHT = 8
+
 _NO_LINES = Lines(np.empty((0, 2)), np.empty(0))
 
 # Bytes of a state of the label search.
@@ -95,7 +101,8 @@ def supported_points(
         Of two objectives.
     start, goal : int
     n_weights : int
-        How many weighted sums to minimise at most, those first that belong to the widest gaps of the hull.
+        How many weighted sums to minimise at most, those first that belong to the widest gaps of the hull; fewer where few
+        points are known.
     meter : Meter
         Once a budget is used up, no more of them are minimised. The two ends are found in any case, unless the time does not
         suffice for the searches that they take: then there is no point.
@@ -181,6 +188,8 @@ def _supported_points(
     while gaps and len(used) < n_weights:
         meter.check()
         if meter.message or (allowance.name and allowance.allows(proven())):
+            break
+        if not allowance.name and LEAST_WEIGHTS <= len(used) and len(used) * _STEPS_PER_WEIGHT >= staircase.steps:
             break
         # After the last two searches.
         if used and pace.due(2 * bounds.shape[1], staircase.steps, len(first)):

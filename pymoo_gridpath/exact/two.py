@@ -45,7 +45,7 @@ from pymoo_gridpath.exact.labels import (
 from pymoo_gridpath.exact.nearness import WHOLE, Allowance, Certificate, lowered
 from pymoo_gridpath.exact.staircase import lower, lower_marks
 from pymoo_gridpath.exact.steps import Pace, Steps, last
-from pymoo_gridpath.exact.supported import Hull, merged, supported_points
+from pymoo_gridpath.exact.supported import LEAST_WEIGHTS, Hull, merged, supported_points
 from pymoo_gridpath.exact.tie_break import traced_paths
 from pymoo_gridpath.exact.ways import FIRST, SECOND, SUM, undominated
 from pymoo_gridpath.search import UNREACHABLE, Moves
@@ -61,7 +61,7 @@ LEAST2, BOUND1, BOUND2, FIELD1, FIELD2, OPEN1, OPEN2 = range(7)
 _BINS_TO_LOOK, _POPS_TO_LOOK = 16, 2**13
 
 # Weighted sums that are minimised for bounds: each takes a search of the grid, which pays the more the larger it is.
-_CELLS_PER_WEIGHT, _LEAST_WEIGHTS, _MOST_WEIGHTS = 2**12, 12, 48
+_CELLS_PER_WEIGHT, _MOST_WEIGHTS = 2**12, 64
 
 
 def front_of_two(moves: Moves, costs: Costs, start: int, goal: int, meter: Meter, allowance: Allowance | None = None) -> Front:
@@ -95,7 +95,7 @@ def fronts_of_two(
     Decision Sciences 20(2), 1995.
     """
     allowance = allowance or Allowance()
-    n_weights = min(max(moves.n_cells // _CELLS_PER_WEIGHT, _LEAST_WEIGHTS), _MOST_WEIGHTS)
+    n_weights = min(max(moves.n_cells // _CELLS_PER_WEIGHT, LEAST_WEIGHTS), _MOST_WEIGHTS)
     pace = Pace()
     hull = yield from supported_points(moves, costs, start, goal, n_weights, meter, allowance, pace)
 
