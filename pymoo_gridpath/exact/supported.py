@@ -189,7 +189,7 @@ def _supported_points(
         meter.check()
         if meter.message or (allowance.name and allowance.allows(proven())):
             break
-        if not allowance.name and LEAST_WEIGHTS <= len(used) and len(used) * _STEPS_PER_WEIGHT >= staircase.steps:
+        if not allowance.name and len(used) >= LEAST_WEIGHTS and len(used) * _STEPS_PER_WEIGHT >= staircase.steps:
             break
         # After the last two searches.
         if used and pace.due(2 * bounds.shape[1], staircase.steps, len(first)):

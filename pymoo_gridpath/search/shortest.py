@@ -104,46 +104,35 @@ class Backward:
         self.cost = np.full((2, moves.n_cells * (8 if with_heading else 1)), UNREACHABLE)
         self.ahead = np.full(self.cost.shape[1], -1, dtype=np.int8)
         self.cost[:, slice(8 * goal, 8 * goal + 8) if with_heading else goal] = 0
-        width, n_lists = self._lists()
-        self._shift, self._lists_of = width.bit_length() - 1, None
-        # Whether weights are applied on the way, to what each step takes.
-        self._fused = weights is not None and n_lists > 0
-        if n_lists:
-            self._lists_of = np.full(n_lists, -1, dtype=np.int32), np.full((2, self.cost.shape[1]), -1, dtype=np.int32)
-            goals = np.arange(8 * goal, 8 * goal + 8) if with_heading else np.array([goal])
-            self._lists_of[0][0] = goals[0]
-            self._lists_of[1][0, goals[:-1]], self._lists_of[1][1, goals[1:]] = goals[1:], goals[:-1]
-            self._counts = np.array([0, len(goals)])
-            self._spent = None if spent is None else np.atleast_2d(spent)
-            return
-        if weights is not None:
-            # The heap takes costs as they are.
-            self.field, self.spent = _sums(field, weights), None if spent is None else _sums(spent, weights)[0]
-            self.enter = None if enter is None else _sums(enter, weights)
-        self._heap, self._n = np.empty((1024, 3), dtype=np.int64), 0
-        for state in range(8 * goal, 8 * goal + 8) if with_heading else (goal,):
-            push(self._heap, self._n, 0, 0, state)
-            self._n += 1
-        if self.spent is None:
-            self.spent = np.zeros(moves.n_cells, dtype=np.int64)
+        # Weights are applied on the way, to what each step takes.
+        width, n_lists, self._in_order = self._lists()
+        self._shift = width.bit_length() - 1
+        self._first_of, self._links = np.full(n_lists, -1, dtype=np.int32), np.full((2, self.cost.shape[1]), -1, dtype=np.int32)
+        goals = np.arange(8 * goal, 8 * goal + 8) if with_heading else np.array([goal])
+        self._first_of[0] = goals[0]
+        self._links[0, goals[:-1]], self._links[1, goals[1:]] = goals[1:], goals[:-1]
+        self._heap, self._counts = np.empty((64, 3), dtype=np.int64), np.array([0, len(goals), 0])
+        self.spent = None if spent is None else np.atleast_2d(spent)
 
-    def _lists(self) -> tuple[int, int]:
-        """Return the width in first cost of the lists that states may be taken from, and how many; 0 if they do not do.
+    def _lists(self) -> tuple[int, int, bool]:
+        """Return the width in first cost of the lists that states are taken from, how many, and whether in order from each.
 
-        A step that costs less than the width would lead from a list to itself. That does no harm in one of a single cost, if
-        the second is the same.
+        From a list that is no wider than the least step they may be taken in any order: no step leads from it to itself. That
+        does no harm, either, in one of a single cost, if the second is the same.
         """
         least, most = int(self.step[0].min()), int(self.step[0].max())
-        if (least <= 0 or self.with_heading) and not self._alone:
-            return 0, 0
         for costs in (self.field, self.enter):
             if costs is not None and self.weights is None:
                 most += int(costs[0].max())
             elif costs is not None and self.weights is not None:
                 most += sum(int(weight * int(part.max())) + 1 for weight, part in zip(self.weights, costs, strict=True))
         width = 1 << (max(least, 1).bit_length() - 1)
-        n_lists = 1 << (most // width + 2).bit_length()
-        return (width, n_lists) if n_lists <= _MOST_LISTS else (0, 0)
+        any_order = ((least > 0 and not self.with_heading) or self._alone) and most // width + 2 <= _MOST_LISTS
+        if not any_order:
+            # About four states a list, and a heap of one of them at a time.
+            bits = min(max(self.cost.shape[1].bit_length() - 2, 6), _MOST_LISTS.bit_length() - 2)
+            width = 1 << max(most.bit_length() - bits, 0)
+        return width, 1 << (most // width + 2).bit_length(), not any_order
 
     @property
     def _alone(self) -> bool:
@@ -165,23 +154,18 @@ class Backward:
         """
         moves, until = self.moves, -1 if until is None else until
         while True:
-            if self._lists_of is not None:
-                costs = self.step, self.field, self.enter, 8 if self.with_heading else None
-                costs = *costs, self._fused, self.weights or (1.0, 0.0), self._spent
-                lists = *self._lists_of, self._counts, self._shift
-                done = _take(
-                    moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS
-                )
-            else:
-                arrays = self.step, self.field, self.enter, self.with_heading, self.spent, self.limit, self.cost, self.ahead
-                heap = self._heap, self._n
-                self._heap, self._n, done = _expand(moves.legal, moves.offsets, *arrays, *heap, until, beyond, _POPS)
+            costs = self.step, self.field, self.enter, 8 if self.with_heading else None
+            costs = *costs, self.weights is not None, self.weights or (1.0, 0.0), self.spent
+            lists = self._first_of, self._links, self._heap, self._counts, self._shift, self._in_order
+            self._heap, done = _take(
+                moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS
+            )
             if done or (stop is not None and stop()):
                 break
 
     def first_step(self, cell: int) -> tuple[int, int]:
         """Return the first cost of the cheapest path that begins in a cell, and the heading of its first step, -1 for none."""
-        best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights if self._fused else None
+        best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights
         steps, legal, offsets = self.step[:, 8].tolist(), int(self.moves.legal[cell]), self.moves.offsets.tolist()
         for m in range(8):
             if not legal >> m & 1:
@@ -206,54 +190,6 @@ def _sums(costs: np.ndarray, weights: tuple[float, float]) -> np.ndarray:
 
 
 @kernel
-def _expand(legal, offsets, step, field, enter, with_heading, spent, limit, cost, ahead, heap, n, until, beyond, max_pops):
-    """Expand at most so many of the ``n`` states in a heap, cheapest first.
-
-    Return the heap, how many it then holds, and whether the search has come as far as it is to.
-    """
-    n_cells = len(legal)
-    pops = 0
-    while n > 0 and pops < max_pops:
-        first = heap[0, 0]
-        second = heap[0, 1]
-        state = heap[0, 2]
-        if first >= beyond or (until >= 0 and first > cost[0, until]):
-            return heap, n, True
-        drop_first(heap, n)
-        n -= 1
-        if first > cost[0, state] or second > cost[1, state]:
-            continue
-        pops += 1
-        if n + 64 > len(heap):
-            heap = grown(heap)
-        cell = state >> 3 if with_heading else state
-        for m in range(8):
-            # A state with a heading can only have been reached along it.
-            if with_heading and m != state & 7:
-                continue
-            before = cell - offsets[m]
-            if before < 0 or before >= n_cells or not (legal[before] >> m) & 1:
-                continue
-            for h in range(8 if with_heading else 1):
-                origin = 8 * before + h if with_heading else before
-                heading = h if with_heading else 8
-                total1 = first + step[0, heading, m] + field[0, cell]
-                total2 = second + step[1, heading, m] + field[1, cell]
-                if enter is not None:
-                    total1 += enter[0, cell, m]
-                    total2 += enter[1, cell, m]
-                if total1 + spent[before] >= limit:
-                    continue
-                if total1 < cost[0, origin] or (total1 == cost[0, origin] and total2 < cost[1, origin]):
-                    cost[0, origin] = total1
-                    cost[1, origin] = total2
-                    ahead[origin] = m
-                    push(heap, n, total1, total2, origin)
-                    n += 1
-    return heap, n, n == 0
-
-
-@kernel
 def _take(
     legal,
     offsets,
@@ -269,16 +205,19 @@ def _take(
     ahead,
     lists,
     links,
+    heap,
     counts,
     shift,
+    in_order,
     until,
     beyond,
     max_pops,
 ):
     """Take at most so many states from lists, those of the list with the least first costs first.
 
-    States are in the list of their first cost, by its bits from ``shift`` on; lists come round again. No step costs less than a
-    list is wide, so that the costs of what is in it are final once its turn has come.
+    States are in the list of their first cost, by its bits from ``shift`` on; lists come round again. If no step costs less
+    than a list is wide, the costs of what is in it are final once its turn has come. Otherwise they are taken in order, from a
+    heap.
 
     Parameters
     ----------
@@ -288,27 +227,55 @@ def _take(
         The first state of each list, -1 if it has none; n is a power of two.
     links : int32, shape (2, n_states)
         The next state in the list of each, and the one before, -1 at the ends.
-    counts : int64, shape (2,)
-        The number of the list whose turn it is, and how many states are in all lists.
+    heap : int64, shape (n, 3)
+        Of the list whose turn it is, if it is taken from in order: costs and states; those that have found lower ones since do
+        not count.
+    counts : int64, shape (3,)
+        The number of the list whose turn it is, how many states are in all lists, and how many entries in the heap.
+    in_order : bool
 
     Returns
     -------
-    bool
+    heap : int64, shape (n, 3)
+        The same, or a larger one.
+    done : bool
         Whether the search has come as far as it is to.
     """
     mask = len(lists) - 1
     pops = 0
-    while counts[1] > 0 and pops < max_pops:
-        state = np.int64(lists[counts[0] & mask])
-        if state < 0:
-            counts[0] += 1
-            reached = counts[0] << shift
-            if reached >= beyond or (until >= 0 and reached > cost[0, until]):
-                return True
-            continue
+    while pops < max_pops:
+        if counts[2] > 0:
+            first, second, state = heap[0, 0], heap[0, 1], heap[0, 2]
+            if first >= beyond or (until >= 0 and first > cost[0, until]):
+                return heap, True
+            drop_first(heap, counts[2])
+            counts[2] -= 1
+            if first > cost[0, state] or second > cost[1, state]:
+                continue
+        elif counts[1] == 0:
+            return heap, True
+        else:
+            here = counts[0] & mask
+            state = np.int64(lists[here])
+            if state < 0:
+                counts[0] += 1
+                reached = counts[0] << shift
+                if reached >= beyond or (until >= 0 and reached > cost[0, until]):
+                    return heap, True
+                continue
+            if in_order:
+                while state >= 0:
+                    if counts[2] == len(heap):
+                        heap = grown(heap)
+                    push(heap, counts[2], cost[0, state], cost[1, state], state)
+                    counts[2] += 1
+                    counts[1] -= 1
+                    state = np.int64(links[0, state])
+                lists[here] = -1
+                continue
+            _unlink(lists, links, here, state)
+            counts[1] -= 1
         pops += 1
-        _unlink(lists, links, counts[0] & mask, state)
-        counts[1] -= 1
         cell = state if headings is None else state >> 3
         if fused:
             first = cost[0, state] + np.int64(np.floor(weights[0] * field[0, cell] + weights[1] * field[1, cell]))
@@ -348,6 +315,15 @@ def _take(
                 cost[0, origin] = total1
                 cost[1, origin] = total2
                 ahead[origin] = m
+                if in_order and total1 >> shift == counts[0]:
+                    if known < UNREACHABLE and known >> shift != counts[0]:
+                        _unlink(lists, links, (known >> shift) & mask, origin)
+                        counts[1] -= 1
+                    if counts[2] == len(heap):
+                        heap = grown(heap)
+                    push(heap, counts[2], total1, total2, origin)
+                    counts[2] += 1
+                    continue
                 if known < UNREACHABLE and known >> shift == total1 >> shift:
                     continue
                 if known < UNREACHABLE:
@@ -360,7 +336,7 @@ def _take(
                 if lists[here] >= 0:
                     links[1, lists[here]] = origin
                 lists[here] = origin
-    return counts[1] == 0
+    return heap, counts[1] == 0 and counts[2] == 0
 
 
 @kernel

@@ -34,15 +34,18 @@ def cases(n):
         yield moves, field, given, draw
 
 
-def test_lists_find_what_a_heap_finds(monkeypatch):
+@pytest.mark.parametrize("step", [STEP, np.stack([0 * STEP[0], STEP[0]])], ids=["length", "nothing"])
+def test_lists_find_what_a_heap_finds(step, monkeypatch):
+    """Where a step may cost nothing, the lists are taken from in order."""
     for moves, field, given, _ in cases(60):
         searches = []
         for most in (2**14, 0):
             monkeypatch.setattr(shortest, "_MOST_LISTS", most)
-            searches.append(Backward(moves, STEP, field, 0, **given))
+            searches.append(Backward(moves, step, field, 0, **given))
             searches[-1].run()
         by_list, by_heap = searches
-        assert by_list._lists_of is not None and by_heap._lists_of is None
+        assert by_list._in_order == (not by_list.step[0].all()) and by_heap._in_order
+        assert len(by_list._first_of) >= len(by_heap._first_of)
         np.testing.assert_array_equal(by_list.cost, by_heap.cost)
 
 
