@@ -18,8 +18,11 @@ UNREACHABLE = 2**61
 # Cells that are expanded before it is asked whether to stop: milliseconds when compiled.
 _POPS = 2**13
 
-# More lists than this, and a heap is as fast.
+# No more lists than this: to pass empty ones takes its time, too.
 _MOST_LISTS = 2**14
+
+# The dearest step leads so many lists ahead, as a power of two, where they are taken from in order: many steps are far cheaper.
+_LIST_BITS = 10
 
 
 def backward_costs(
@@ -111,6 +114,8 @@ class Backward:
         goals = np.arange(8 * goal, 8 * goal + 8) if with_heading else np.array([goal])
         self._first_of[0] = goals[0]
         self._links[0, goals[:-1]], self._links[1, goals[1:]] = goals[1:], goals[:-1]
+        self._blocks = np.zeros(max(n_lists >> 6, 1), dtype=np.int32)
+        self._blocks[0] = len(goals)
         self._heap, self._counts = np.empty((64, 3), dtype=np.int64), np.array([0, len(goals), 0])
         self.spent = None if spent is None else np.atleast_2d(spent)
 
@@ -129,8 +134,8 @@ class Backward:
         width = 1 << (max(least, 1).bit_length() - 1)
         any_order = ((least > 0 and not self.with_heading) or self._alone) and most // width + 2 <= _MOST_LISTS
         if not any_order:
-            # About four states a list, and a heap of one of them at a time.
-            bits = min(max(self.cost.shape[1].bit_length() - 2, 6), _MOST_LISTS.bit_length() - 2)
+            # A heap of one list at a time; no more lists than a quarter of the states.
+            bits = min(max(self.cost.shape[1].bit_length() - 2, 6), _LIST_BITS, _MOST_LISTS.bit_length() - 2)
             width = 1 << max(most.bit_length() - bits, 0)
         return width, 1 << (most // width + 2).bit_length(), not any_order
 
@@ -156,7 +161,7 @@ class Backward:
         while True:
             costs = self.step, self.field, self.enter, 8 if self.with_heading else None
             costs = *costs, self.weights is not None, self.weights or (1.0, 0.0), self.spent
-            lists = self._first_of, self._links, self._heap, self._counts, self._shift, self._in_order
+            lists = self._first_of, self._blocks, self._links, self._heap, self._counts, self._shift, self._in_order
             self._heap, done = _take(
                 moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS
             )
@@ -204,6 +209,7 @@ def _take(
     cost,
     ahead,
     lists,
+    blocks,
     links,
     heap,
     counts,
@@ -225,6 +231,8 @@ def _take(
         8 where costs depend on the heading; None, so that the compiler leaves out what is for them, where they do not.
     lists : int32, shape (n,)
         The first state of each list, -1 if it has none; n is a power of two.
+    blocks : int32, shape (max(n // 64, 1),)
+        How many states are in each 64 lists together: where steps differ much, most lists have none.
     links : int32, shape (2, n_states)
         The next state in the list of each, and the one before, -1 at the ends.
     heap : int64, shape (n, 3)
@@ -258,7 +266,12 @@ def _take(
             here = counts[0] & mask
             state = np.int64(lists[here])
             if state < 0:
-                counts[0] += 1
+                turn = counts[0]
+                while lists[turn & mask] < 0:
+                    turn += 1
+                    while turn & 63 == 0 and blocks[(turn & mask) >> 6] == 0:
+                        turn += 64
+                counts[0] = turn
                 reached = counts[0] << shift
                 if reached >= beyond or (until >= 0 and reached > cost[0, until]):
                     return heap, True
@@ -270,10 +283,11 @@ def _take(
                     push(heap, counts[2], cost[0, state], cost[1, state], state)
                     counts[2] += 1
                     counts[1] -= 1
+                    blocks[here >> 6] -= 1
                     state = np.int64(links[0, state])
                 lists[here] = -1
                 continue
-            _unlink(lists, links, here, state)
+            _unlink(lists, blocks, links, here, state)
             counts[1] -= 1
         pops += 1
         cell = state if headings is None else state >> 3
@@ -317,7 +331,7 @@ def _take(
                 ahead[origin] = m
                 if in_order and total1 >> shift == counts[0]:
                     if known < UNREACHABLE and known >> shift != counts[0]:
-                        _unlink(lists, links, (known >> shift) & mask, origin)
+                        _unlink(lists, blocks, links, (known >> shift) & mask, origin)
                         counts[1] -= 1
                     if counts[2] == len(heap):
                         heap = grown(heap)
@@ -327,7 +341,7 @@ def _take(
                 if known < UNREACHABLE and known >> shift == total1 >> shift:
                     continue
                 if known < UNREACHABLE:
-                    _unlink(lists, links, (known >> shift) & mask, origin)
+                    _unlink(lists, blocks, links, (known >> shift) & mask, origin)
                 else:
                     counts[1] += 1
                 here = (total1 >> shift) & mask
@@ -336,12 +350,14 @@ def _take(
                 if lists[here] >= 0:
                     links[1, lists[here]] = origin
                 lists[here] = origin
+                blocks[here >> 6] += 1
     return heap, counts[1] == 0 and counts[2] == 0
 
 
 @kernel
-def _unlink(lists, links, number, state):
+def _unlink(lists, blocks, links, number, state):
     """Take a state out of a list."""
+    blocks[number >> 6] -= 1
     after = links[0, state]
     before = links[1, state]
     if before >= 0:
