@@ -33,13 +33,13 @@ class Work(NamedTuple):
     run : numpy.ndarray of int64, shape (3,)
         Number of the search that is on, and of the cells that it has expanded; if it has found no route, the bound of the whole
         cost below which all cells have been expanded.
-    stamp : numpy.ndarray of int64, shape (n_cells,)
+    stamp : numpy.ndarray of int32, shape (n_cells,)
         The last search that reached each cell; the other arrays hold for cells of the search that is on.
     cost : numpy.ndarray of int64, shape (n_cells,)
         Least cost of a route to each cell so far.
-    came : numpy.ndarray of int64, shape (n_cells,)
+    came : numpy.ndarray of uint8, shape (n_cells,)
         Heading along which that route comes.
-    place : numpy.ndarray of int64, shape (n_cells,)
+    place : numpy.ndarray of int32, shape (n_cells,)
         For the positions of cells in a path.
     heap : numpy.ndarray of int64, shape (n, 3)
     """
@@ -55,9 +55,14 @@ class Work(NamedTuple):
 def make_work(terrain: Terrain) -> Work:
     """Return the working arrays for searches of a terrain."""
     n = len(terrain.legal)
-    cost, came, place = np.empty((3, n), dtype=np.int64)
+    # No wider than need be: searches wait for memory.
     return Work(
-        np.zeros(3, dtype=np.int64), np.zeros(n, dtype=np.int64), cost, came, place, np.empty((4096, 3), dtype=np.int64)
+        np.zeros(3, dtype=np.int64),
+        np.zeros(n, dtype=np.int32),
+        np.empty(n, dtype=np.int64),
+        np.empty(n, dtype=np.uint8),
+        np.empty(n, dtype=np.int32),
+        np.empty((4096, 3), dtype=np.int64),
     )
 
 

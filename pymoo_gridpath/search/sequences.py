@@ -70,8 +70,13 @@ def _are_legal(terrain, cells, offsets):
         first, last = offsets[i], offsets[i + 1] - 1
         if last < first or cells[first] != terrain.start or cells[last] != terrain.goal:
             continue
-        k = first
-        while k < last and heading_between(terrain, cells[k], cells[k + 1]) >= 0:
+        k, m = first, 0
+        while k < last:
+            # Mostly the same heading as before; the first cell is one of the grid, and so is what a legal step leads to.
+            if not ((terrain.legal[cells[k]] >> m) & 1 and cells[k] + terrain.offsets[m] == cells[k + 1]):
+                m = heading_between(terrain, cells[k], cells[k + 1])
+                if m < 0:
+                    break
             k += 1
         legal[i] = k == last
     return legal
