@@ -17,7 +17,6 @@ from pymoo_gridpath.neighbourhood import MOVES, ONE_SIDE, steps_in_words
 
 if TYPE_CHECKING:
     from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.grid.picture import scene_of, unknown_of
 
 
 def add_map_commands(commands) -> None:
@@ -79,6 +78,7 @@ def _maps(arguments) -> int:
 
 def _info(arguments) -> int:
     """Describe a map file as it is read."""
+    from pymoo_gridpath.grid.picture import scene_of, unknown_of
     from pymoo_gridpath.maps import query_of
 
     grid = load(arguments.map, arguments)

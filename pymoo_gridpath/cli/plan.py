@@ -26,7 +26,6 @@ from pymoo_gridpath.cli.resume import add_resume, read_stored, said, write_popul
 from pymoo_gridpath.cli.suites import add_suite, suite_problem
 from pymoo_gridpath.cli.waypoints import add_waypoint_options, check_waypoint_options, write_waypoints
 from pymoo_gridpath.errors import GridPathError, visible
-from pymoo_gridpath.grid.picture import unknown_of
 from pymoo_gridpath.interrupt import StopOnCtrlC
 from pymoo_gridpath.progress import Progress, say
 
@@ -136,6 +135,7 @@ def _plan(arguments) -> int:
     # Imported late, since `maps`, `info` and --help do without.
     from pymoo_gridpath.algorithms import find_algorithm
     from pymoo_gridpath.decision.provenance import describe_source
+    from pymoo_gridpath.grid.picture import unknown_of
     from pymoo_gridpath.maps import query_of
     from pymoo_gridpath.problems import GridPathProblem
     from pymoo_gridpath.problems.standing import StandingProblem
