@@ -55,7 +55,7 @@ class Work(NamedTuple):
 def make_work(terrain: Terrain) -> Work:
     """Return the working arrays for searches of a terrain."""
     n = len(terrain.legal)
-    # No wider than need be: searches wait for memory.
+    # No wider than need be, for the memory alone: searches take as long with wider ones.
     return Work(
         np.zeros(3, dtype=np.int64),
         np.zeros(n, dtype=np.int32),
