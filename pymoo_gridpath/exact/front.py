@@ -123,6 +123,17 @@ def exact_front(
 
 def check_front_is_known(problem) -> None:
     """Raise a CapabilityError if no search finds the exact front of a problem, whatever its budget."""
+    _check_kinds(problem)
+    coding = problem.representation
+    if coding.codes_detours or coding.timed:
+        return
+    summed = [problem.objectives[k] for k in _kinds(problem)[0]]
+    if summed:
+        check_detours(problem, summed, integer_costs(summed, problem.grid, coding.moves))
+
+
+def _check_kinds(problem) -> None:
+    """Raise a CapabilityError where coding, objectives and size alone say so; a search looks at detours by its own costs."""
     coding = representation_of(problem)
     if not coding.codes_all:
         raise CapabilityError(
@@ -135,15 +146,13 @@ def check_front_is_known(problem) -> None:
     if len(numbers) > 3:
         besides = " besides those of which the worst cell decides" if worst else ""
         raise CapabilityError(f"the problem has {len(numbers)} objectives{besides}, expected at most 3 for an exact front")
-    moves, summed = coding.moves, [problem.objectives[k] for k in numbers]
+    moves = coding.moves
     if moves.n_cells > _MOST_CELLS:
         n_cells = np.count_nonzero(moves.legal)
         if n_cells > _MOST_CELLS:
             raise CapabilityError(f"paths may visit {n_cells:,} cells, expected at most {_MOST_CELLS:,} for an exact front")
-    for objective in summed:
-        check_adds_up(objective)
-    if summed and not coding.codes_detours:
-        check_detours(problem, summed, integer_costs(summed, problem.grid, moves))
+    for k in numbers:
+        check_adds_up(problem.objectives[k])
 
 
 def better_fronts(
@@ -157,7 +166,7 @@ def better_fronts(
     """
     checks.instance("budget", budget, Budget, optional=True)
     allowance = Allowance(epsilon, share)
-    check_front_is_known(problem)
+    _check_kinds(problem)
     if problem.representation.timed:
         refuse(allowance, "obstacles that move")
         return _front_in_time(problem, budget)

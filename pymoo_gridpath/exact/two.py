@@ -196,10 +196,9 @@ class _Search(LabelSearch):
 
     def fronts(self) -> list[Front]:
         """Return what has been found, and what is non-dominated of the paths that have been joined."""
-        joined, ways = self.joined[: self.counts[N_JOINED]], self.hull.ways
-        paths = []
-        for label, column in joined[undominated(joined[:, 2:]), :2].tolist():
-            path = traced_paths(self.closed, np.array([label]))[0]
+        joined, ways, paths = self.joined[: self.counts[N_JOINED]], self.hull.ways, []
+        joined = joined[undominated(joined[:, 2:])]
+        for path, column in zip(traced_paths(self.closed, joined[:, 0]), joined[:, 1].tolist(), strict=True):
             state = int(path[-1])
             if self.costs.with_heading:
                 state = 8 * state + self.moves.offsets.tolist().index(state - int(path[-2]))

@@ -54,6 +54,7 @@ class Ways:
 
     def __init__(self, moves: Moves, costs: Costs, goal: int, n_weights: int, staircase: Staircase, at_once: bool):
         self.moves, self.costs, self.goal, self.staircase = moves, costs, goal, staircase
+        self._arrays = moves.offsets, costs.step, costs.field, costs.enter, costs.with_heading
         self._n_states = moves.n_cells * (8 if costs.with_heading else 1)
         self.rows = np.empty((n_weights, self._n_states if at_once else 0, 3), dtype=np.float32)
         self._at_once, self._sums = at_once, []
@@ -78,8 +79,7 @@ class Ways:
         return column, found.ahead
 
     def _follow(self, ahead: np.ndarray, scratch: np.ndarray, column: np.ndarray) -> None:
-        costs = self.costs.step, self.costs.field, self.costs.enter, self.costs.with_heading
-        follow_all(self.moves.offsets, *costs, ahead, self.goal, scratch, column)
+        follow_all(*self._arrays, ahead, self.goal, scratch, column)
 
     def add(self, column: np.ndarray, ahead: np.ndarray) -> None:
         """Add ways, and let all paths that are known go on along them."""
@@ -90,8 +90,7 @@ class Ways:
 
     def begin(self, path: np.ndarray) -> None:
         """Add a path whose beginnings may go on otherwise."""
-        costs = self.costs.step, self.costs.field, self.costs.enter, self.costs.with_heading
-        states, spent = spent_along(self.moves.offsets, *costs, path)
+        states, spent = spent_along(*self._arrays, path)
         self._paths.append(path)
         self._states, self._spent = np.concatenate([self._states, states]), np.concatenate([self._spent, spent])
 
