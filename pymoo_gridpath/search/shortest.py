@@ -108,7 +108,7 @@ class Backward:
         self.ahead = np.full(self.cost.shape[1], -1, dtype=np.int8)
         self.cost[:, slice(8 * goal, 8 * goal + 8) if with_heading else goal] = 0
         # Weights are applied on the way, to what each step takes.
-        width, n_lists, self._in_order = self._lists()
+        width, n_lists, in_order = self._lists()
         self._shift = width.bit_length() - 1
         self._first_of, self._links = np.full(n_lists, -1, dtype=np.int32), np.full((2, self.cost.shape[1]), -1, dtype=np.int32)
         goals = np.arange(8 * goal, 8 * goal + 8) if with_heading else np.array([goal])
@@ -116,7 +116,8 @@ class Backward:
         self._links[0, goals[:-1]], self._links[1, goals[1:]] = goals[1:], goals[:-1]
         self._blocks = np.zeros(max(n_lists >> 6, 1), dtype=np.int32)
         self._blocks[0] = len(goals)
-        self._heap, self._counts = np.empty((64, 3), dtype=np.int64), np.array([0, len(goals), 0])
+        self._in_order, self._heap = in_order or None, np.empty((64, 3), dtype=np.int64)
+        self._counts = np.array([0, len(goals), 0])
         self.spent = None if spent is None else np.atleast_2d(spent)
 
     def _lists(self) -> tuple[int, int, bool]:
@@ -240,7 +241,8 @@ def _take(
         not count.
     counts : int64, shape (3,)
         The number of the list whose turn it is, how many states are in all lists, and how many entries in the heap.
-    in_order : bool
+    in_order : True, or None
+        None, for the compiler again, where states are taken from lists in any order.
 
     Returns
     -------
@@ -252,7 +254,24 @@ def _take(
     mask = len(lists) - 1
     pops = 0
     while pops < max_pops:
-        if counts[2] > 0:
+        if counts[2] == 0:
+            if counts[1] == 0:
+                return heap, True
+            here = counts[0] & mask
+            if lists[here] < 0:
+                turn = counts[0]
+                while lists[turn & mask] < 0:
+                    turn += 1
+                    while turn & 63 == 0 and blocks[(turn & mask) >> 6] == 0:
+                        turn += 64
+                counts[0] = turn
+                here = turn & mask
+                reached = turn << shift
+                if reached >= beyond or (until >= 0 and reached > cost[0, until]):
+                    return heap, True
+            if in_order is not None:
+                heap = _moved(lists, blocks, links, here, cost, heap, counts)
+        if in_order is not None:
             first, second, state = heap[0, 0], heap[0, 1], heap[0, 2]
             if first >= beyond or (until >= 0 and first > cost[0, until]):
                 return heap, True
@@ -260,33 +279,8 @@ def _take(
             counts[2] -= 1
             if first > cost[0, state] or second > cost[1, state]:
                 continue
-        elif counts[1] == 0:
-            return heap, True
         else:
-            here = counts[0] & mask
             state = np.int64(lists[here])
-            if state < 0:
-                turn = counts[0]
-                while lists[turn & mask] < 0:
-                    turn += 1
-                    while turn & 63 == 0 and blocks[(turn & mask) >> 6] == 0:
-                        turn += 64
-                counts[0] = turn
-                reached = counts[0] << shift
-                if reached >= beyond or (until >= 0 and reached > cost[0, until]):
-                    return heap, True
-                continue
-            if in_order:
-                while state >= 0:
-                    if counts[2] == len(heap):
-                        heap = grown(heap)
-                    push(heap, counts[2], cost[0, state], cost[1, state], state)
-                    counts[2] += 1
-                    counts[1] -= 1
-                    blocks[here >> 6] -= 1
-                    state = np.int64(links[0, state])
-                lists[here] = -1
-                continue
             _unlink(lists, blocks, links, here, state)
             counts[1] -= 1
         pops += 1
@@ -329,7 +323,7 @@ def _take(
                 cost[0, origin] = total1
                 cost[1, origin] = total2
                 ahead[origin] = m
-                if in_order and total1 >> shift == counts[0]:
+                if in_order is not None and total1 >> shift == counts[0]:
                     if known < UNREACHABLE and known >> shift != counts[0]:
                         _unlink(lists, blocks, links, (known >> shift) & mask, origin)
                         counts[1] -= 1
@@ -352,6 +346,22 @@ def _take(
                 lists[here] = origin
                 blocks[here >> 6] += 1
     return heap, counts[1] == 0 and counts[2] == 0
+
+
+@kernel
+def _moved(lists, blocks, links, number, cost, heap, counts):
+    """Move all states of a list to the heap, and return it."""
+    state = np.int64(lists[number])
+    while state >= 0:
+        if counts[2] == len(heap):
+            heap = grown(heap)
+        push(heap, counts[2], cost[0, state], cost[1, state], state)
+        counts[2] += 1
+        counts[1] -= 1
+        blocks[number >> 6] -= 1
+        state = np.int64(links[0, state])
+    lists[number] = -1
+    return heap
 
 
 @kernel

@@ -44,7 +44,7 @@ def test_lists_find_what_a_heap_finds(step, monkeypatch):
             searches.append(Backward(moves, step, field, 0, **given))
             searches[-1].run()
         by_list, by_heap = searches
-        assert by_list._in_order == (not by_list.step[0].all()) and by_heap._in_order
+        assert bool(by_list._in_order) == (not by_list.step[0].all()) and by_heap._in_order
         assert len(by_list._first_of) >= len(by_heap._first_of)
         np.testing.assert_array_equal(by_list.cost, by_heap.cost)
 
