@@ -362,8 +362,9 @@ def test_a_dask_cluster(plan, done, tmp_path):
                 meanwhile(tmp_path / "late", lambda: late.append(cluster.worker("--no-nanny", PYTHONPATH=without))),
                 pytest.raises(GridPathError, match=r"the Dask worker tcp://.* cannot import pymoo_gridpath"),
             ):
-                for number in range(40):
-                    run_study(make_plan(n_seeds=1, generations=60 + number), tmp_path / "late", executor)
+                # More and more of the same study, however long the worker takes to join.
+                for n_seeds in range(1, 40):
+                    run_study(make_plan(n_seeds=n_seeds, generations=60), tmp_path / "late", executor)
             stored_late = Store(tmp_path / "late").check(stored(tmp_path / "late"))
             assert not stored_late.failed and len(stored_late.meta) >= 3
             late[0].kill()
