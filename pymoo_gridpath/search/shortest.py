@@ -24,6 +24,9 @@ _MOST_LISTS = 2**14
 # The dearest step leads so many lists ahead, as a power of two, where they are taken from in order: many steps are far cheaper.
 _LIST_BITS = 10
 
+# Why the kernel returned.
+_DONE, _PAUSED, _HEAP_FULL = range(3)
+
 
 def backward_costs(
     moves: Moves,
@@ -163,10 +166,10 @@ class Backward:
             costs = self.step, self.field, self.enter, 8 if self.with_heading else None
             costs = *costs, self.weights is not None, self.weights or (1.0, 0.0), self.spent
             lists = self._first_of, self._blocks, self._links, self._heap, self._counts, self._shift, self._in_order
-            self._heap, done = _take(
-                moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS
-            )
-            if done or (stop is not None and stop()):
+            status = _take(moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS)
+            if status == _HEAP_FULL:
+                self._heap = grown(self._heap)
+            elif status == _DONE or (stop is not None and stop()):
                 break
 
     def first_step(self, cell: int) -> tuple[int, int]:
@@ -246,18 +249,16 @@ def _take(
 
     Returns
     -------
-    heap : int64, shape (n, 3)
-        The same, or a larger one.
-    done : bool
-        Whether the search has come as far as it is to.
+    status : int
+        Whether the search has come as far as it is to, there is no room in the heap, or so many states have been taken.
     """
     mask = len(lists) - 1
     pops = 0
     while pops < max_pops:
+        here = counts[0] & mask
         if counts[2] == 0:
             if counts[1] == 0:
-                return heap, True
-            here = counts[0] & mask
+                return _DONE
             if lists[here] < 0:
                 turn = counts[0]
                 while lists[turn & mask] < 0:
@@ -268,13 +269,16 @@ def _take(
                 here = turn & mask
                 reached = turn << shift
                 if reached >= beyond or (until >= 0 and reached > cost[0, until]):
-                    return heap, True
-            if in_order is not None:
-                heap = _moved(lists, blocks, links, here, cost, heap, counts)
+                    return _DONE
         if in_order is not None:
+            if lists[here] >= 0:
+                move_to_heap(lists, blocks, links, here, cost, heap, counts)
+            # As many as one state leads to, or the whole list.
+            if counts[2] + 8 > len(heap) or lists[here] >= 0:
+                return _HEAP_FULL
             first, second, state = heap[0, 0], heap[0, 1], heap[0, 2]
             if first >= beyond or (until >= 0 and first > cost[0, until]):
-                return heap, True
+                return _DONE
             drop_first(heap, counts[2])
             counts[2] -= 1
             if first > cost[0, state] or second > cost[1, state]:
@@ -327,8 +331,6 @@ def _take(
                     if known < UNREACHABLE and known >> shift != counts[0]:
                         _unlink(lists, blocks, links, (known >> shift) & mask, origin)
                         counts[1] -= 1
-                    if counts[2] == len(heap):
-                        heap = grown(heap)
                     push(heap, counts[2], total1, total2, origin)
                     counts[2] += 1
                     continue
@@ -345,23 +347,22 @@ def _take(
                     links[1, lists[here]] = origin
                 lists[here] = origin
                 blocks[here >> 6] += 1
-    return heap, counts[1] == 0 and counts[2] == 0
+    return _DONE if counts[1] == 0 and counts[2] == 0 else _PAUSED
 
 
 @kernel
-def _moved(lists, blocks, links, number, cost, heap, counts):
-    """Move all states of a list to the heap, and return it."""
+def move_to_heap(lists, blocks, links, number, cost, heap, counts):
+    """Move the states of a list to the heap, as many as there is room for."""
     state = np.int64(lists[number])
-    while state >= 0:
-        if counts[2] == len(heap):
-            heap = grown(heap)
+    while state >= 0 and counts[2] < len(heap):
         push(heap, counts[2], cost[0, state], cost[1, state], state)
         counts[2] += 1
         counts[1] -= 1
         blocks[number >> 6] -= 1
         state = np.int64(links[0, state])
-    lists[number] = -1
-    return heap
+    lists[number] = state
+    if state >= 0:
+        links[1, state] = -1
 
 
 @kernel
