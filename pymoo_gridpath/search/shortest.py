@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -111,7 +110,7 @@ class Backward:
         self.ahead = np.full(self.cost.shape[1], -1, dtype=np.int8)
         self.cost[:, slice(8 * goal, 8 * goal + 8) if with_heading else goal] = 0
         # Weights are applied on the way, to what each step takes.
-        width, n_lists, in_order = self._lists()
+        width, n_lists, in_order = self._lists(goal)
         self._shift = width.bit_length() - 1
         self._first_of, self._links = np.full(n_lists, -1, dtype=np.int32), np.full((2, self.cost.shape[1]), -1, dtype=np.int32)
         goals = np.arange(8 * goal, 8 * goal + 8) if with_heading else np.array([goal])
@@ -123,7 +122,7 @@ class Backward:
         self._counts = np.array([0, len(goals), 0])
         self.spent = None if spent is None else np.atleast_2d(spent)
 
-    def _lists(self) -> tuple[int, int, bool]:
+    def _lists(self, goal: int) -> tuple[int, int, bool]:
         """Return the width in first cost of the lists that states are taken from, how many, and whether in order from each.
 
         From a list that is no wider than the least step they may be taken in any order: no step leads from it to itself. That
@@ -135,6 +134,9 @@ class Backward:
                 most += int(costs[0].max())
             elif costs is not None and self.weights is not None:
                 most += sum(int(weight * int(part.max())) + 1 for weight, part in zip(self.weights, costs, strict=True))
+        if self.weights is None and not self.with_heading:
+            # Steps lead to the goal, and to cells that steps lead on from.
+            least += int(min(self.field[0, goal], self.field[0].min(initial=UNREACHABLE, where=self.moves.legal > 0)))
         width = 1 << (max(least, 1).bit_length() - 1)
         any_order = ((least > 0 and not self.with_heading) or self._alone) and most // width + 2 <= _MOST_LISTS
         if not any_order:
@@ -174,23 +176,36 @@ class Backward:
 
     def first_step(self, cell: int) -> tuple[int, int]:
         """Return the first cost of the cheapest path that begins in a cell, and the heading of its first step, -1 for none."""
-        best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights
-        steps, legal, offsets = self.step[:, 8].tolist(), int(self.moves.legal[cell]), self.moves.offsets.tolist()
-        for m in range(8):
-            if not legal >> m & 1:
-                continue
-            after = cell + offsets[m]
-            one, two = self.cost[:, 8 * after + m if self.with_heading else after].tolist()
-            one, two = one + steps[0][m], two + steps[1][m]
-            for costs in (self.field[:, after], None if self.enter is None else self.enter[:, after, m]):
-                if costs is not None:
-                    entered = costs.tolist()
-                    if weights is not None:
-                        entered = math.floor(weights[0] * entered[0] + weights[1] * entered[1]), entered[0]
-                    one, two = one + entered[0], two + entered[1]
-            if (one, two) < best:
-                best, first = (one, two), m
-        return best[0], first
+        costs = self.step, self.field, self.enter, self.with_heading, self.weights is not None, self.weights or (1.0, 0.0)
+        return first_step(self.moves.legal, self.moves.offsets, *costs, self.cost, cell)
+
+
+@kernel
+def first_step(legal, offsets, step, field, enter, with_heading, fused, weights, cost, cell):
+    """Return the first cost of the cheapest path that begins in a cell, and the heading of its first step, -1 for none."""
+    best1 = best2 = UNREACHABLE
+    first = -1
+    for m in range(8):
+        if not (legal[cell] >> m) & 1:
+            continue
+        after = cell + offsets[m]
+        state = 8 * after + m if with_heading else after
+        one, two = cost[0, state] + step[0, 8, m], cost[1, state] + step[1, 8, m]
+        if fused:
+            one += np.int64(np.floor(weights[0] * field[0, after] + weights[1] * field[1, after]))
+            two += field[0, after]
+        else:
+            one += field[0, after]
+            two += field[1, after]
+        if enter is not None and fused:
+            one += np.int64(np.floor(weights[0] * enter[0, after, m] + weights[1] * enter[1, after, m]))
+            two += enter[0, after, m]
+        elif enter is not None:
+            one += enter[0, after, m]
+            two += enter[1, after, m]
+        if one < best1 or (one == best1 and two < best2):
+            best1, best2, first = one, two, m
+    return best1, first
 
 
 def _sums(costs: np.ndarray, weights: tuple[float, float]) -> np.ndarray:
