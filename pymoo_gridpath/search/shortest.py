@@ -118,7 +118,7 @@ class Backward:
         self._links[0, goals[:-1]], self._links[1, goals[1:]] = goals[1:], goals[:-1]
         self._blocks = np.zeros(max(n_lists >> 6, 1), dtype=np.int32)
         self._blocks[0] = len(goals)
-        self._in_order, self._heap = in_order or None, np.empty((64, 3), dtype=np.int64)
+        self._in_order, self._heap = in_order or None, np.empty((1024, 3), dtype=np.int64)
         self._counts = np.array([0, len(goals), 0])
         self.spent = None if spent is None else np.atleast_2d(spent)
 
