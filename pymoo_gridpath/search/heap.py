@@ -132,14 +132,21 @@ def drop_key(keys, cells, n):
     i = 0
     while True:
         least = 4 * i + 1
-        if least >= n:
+        if least + 3 < n:
+            # Without a branch, see above.
+            one, two, three = keys[least], keys[least + 1], keys[least + 2]
+            smallest = min(min(one, two), min(three, keys[least + 3]))
+            least += (one != smallest) * (1 + (two != smallest) * (1 + (three != smallest)))
+        elif least < n:
+            for k in range(least + 1, n):
+                if keys[k] < keys[least]:
+                    least = k
+            smallest = keys[least]
+        else:
             break
-        for k in range(least + 1, min(least + 4, n)):
-            if keys[k] < keys[least]:
-                least = k
-        if key <= keys[least]:
+        if key <= smallest:
             break
-        keys[i] = keys[least]
+        keys[i] = smallest
         cells[i] = cells[least]
         i = least
     keys[i] = key
