@@ -102,13 +102,13 @@ def _last_map(path, file: Path, topic: str | None, reader: Any, typestore: Any) 
         if topic is None:
             topic = _USUAL if _USUAL in topics else topics[0] if len(topics) == 1 else None
         if topic not in topics:
-            asked = "there is no topic to prefer" if topic is None else f"there is no map on the topic {topic!r}"
-            raise MapError(path, f"{asked}, expected topic=, one of {', '.join(topics)}")
+            asked = "there is no topic to prefer" if topic is None else f"there is no map on the topic {checks.shown(topic)}"
+            raise MapError(path, f"{asked}, expected topic=, one of {checks.printable(', '.join(topics), 200)}")
         last = None
         for connection, _, data in bag.messages([one for one in with_maps if one.topic == topic]):
             last = connection, data
         if last is None:
-            raise MapError(path, f"no message was recorded on the topic {topic!r}, expected one with a map")
+            raise MapError(path, f"no message was recorded on the topic {checks.shown(topic)}, expected one with a map")
         message: Any = bag.deserialize(last[1], last[0].msgtype)
         check_size(path, int(message.info.width), int(message.info.height))
         return message

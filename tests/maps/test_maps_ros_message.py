@@ -105,7 +105,7 @@ def test_text(tmp_path, end):
         (("height: 3", "height: 0"), "the map is 4 x 0 cells"),
         (("height: 3", "height: 3000000000"), "the map is 4 x 3000000000 cells, expected at most"),
         (("  width: 4\n", ""), "info.width is None"),
-        (("position:", "place:"), "expected a nav_msgs/OccupancyGrid"),
+        (("position:", "place:"), "the message has no 'position', expected a nav_msgs/OccupancyGrid"),
         (("x: 0.0", "x: 0.1"), "info.origin is turned by the quaternion"),
         (("x: 0.0", "x: here"), "info.origin is 'here'"),
         (("info:", "info: ["), "the YAML cannot be read"),
@@ -196,6 +196,8 @@ def test_bags(tmp_path, suffix):
         for topic in ("/talk", "/nothing"):
             with pytest.raises(MapError, match=f"no map on the topic '{topic}', expected topic=, one of /costs, /map"):
                 read_rosbag(one, topic=topic)
+        with pytest.raises(MapError, match=r"no map on the topic '\w+\.\.\.\w+', expected topic="):
+            read_rosbag(one, topic="long" * 1000)
 
 
 def test_which_topic_of_several(tmp_path):
