@@ -23,7 +23,7 @@ from pymoo_gridpath.exact import exact_front
 from pymoo_gridpath.maps import load_map, load_shipped, read_scen
 from pymoo_gridpath.maps.queries import Query, ends_of
 from pymoo_gridpath.objectives import Objective
-from pymoo_gridpath.operators import path_operators
+from pymoo_gridpath.operators import BitwiseMutation, path_operators
 from pymoo_gridpath.plotting import plot_convergence
 from pymoo_gridpath.representations import REPRESENTATIONS, CellSequence, make_representation
 from pymoo_gridpath.study.running.store import Store
@@ -151,6 +151,12 @@ def test_names_of_any_length_are_cut_wherever_they_are_said(tmp_path, recwarn):
         assert len(str(caught.value)) < 600
     grid.inflate(0.1)
     assert [len(str(item.message)) < 600 for item in recwarn] == [True]
+
+
+def test_empty_lists_have_the_type_that_was_asked_for():
+    for kinds, kind in (("b", "b"), ("biu", "i"), ("biuf", "f")):
+        assert checks.array("a", np.empty((0, 2)), (None, 2), kinds, expected="some").dtype.kind == kind
+    assert BitwiseMutation().flip(np.empty((0, 3)), 0.5, np.random.default_rng(1)).shape == (0, 3)
 
 
 def test_flags_are_truth_values():

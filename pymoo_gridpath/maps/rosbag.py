@@ -58,8 +58,13 @@ def read_rosbag(
     library = _library(path)
     try:
         message = _last_map(path, file, topic, *library)
-    except (MapError, MemoryError):
+    except MapError:
         raise
+    except MemoryError:
+        # The library makes room for whatever size a damaged bag declares.
+        if not _is_room_for(2 * file.stat().st_size):
+            raise
+        raise MapError(path, "the bag declares more than it holds, expected a whole bag of ROS 1 or 2") from None
     except Exception as error:
         # What is damaged fails in almost any way.
         why = checks.printable(error, 120)
@@ -79,6 +84,13 @@ class RosbagFormat(MapFormat):
 
     def matches(self, head, path):
         return head.startswith(_MAGIC) or head.startswith(b"rosbag2_bagfile_information:")
+
+
+def _is_room_for(n_bytes: int) -> bool:
+    try:
+        return len(bytearray(n_bytes)) == n_bytes
+    except MemoryError:
+        return False
 
 
 def _library(path) -> tuple[Any, Any]:
