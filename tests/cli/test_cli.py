@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from command_lines import FAST, run, run_process
+from command_lines import FAST, UNDRAWN, run, run_process
 
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
@@ -309,24 +309,24 @@ def test_no_legal_path_is_said_and_exits_with_1(tmp_path):
 INTERRUPTED = """
 import os, signal, sys
 from pymoo.core.algorithm import Algorithm
-from pymoo_gridpath.cli import main
+
+times = int(sys.argv.pop(1))
 
 def go_on_and_interrupt(self, go_on=Algorithm.next):
     go_on(self)
-    for _ in range(int(sys.argv[1]) if self.n_iter == 4 else 0):
+    for _ in range(times if self.n_iter == 4 else 0):
         os.kill(os.getpid(), signal.SIGINT)
 
 # Processes that are started in the background may have been told to ignore it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 Algorithm.next = go_on_and_interrupt
-sys.exit(main(sys.argv[2:]))
 """
 
 
 def interrupted(times, out):
     arguments = ["plan", "paper16", "--generations", "100000", "--pop-size", "40", "-o", str(out)]
     done = subprocess.run(
-        [sys.executable, "-c", INTERRUPTED, str(times), *arguments], capture_output=True, text=True, timeout=300
+        [sys.executable, "-c", INTERRUPTED + UNDRAWN, str(times), *arguments], capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 130
     assert "stopping, and keeping what was found" in done.stderr and "Traceback" not in done.stderr
@@ -435,7 +435,7 @@ def test_progress_shows_on_a_terminal_and_clears_its_line():
 def test_progress_appears_on_a_real_terminal(tmp_path, free_map):
     pty = pytest.importorskip("pty", reason="there are no pseudo-terminals on Windows")
     master, slave = pty.openpty()
-    command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", str(free_map), "--start", "0,0", "--goal", "5,3"]
+    command = [sys.executable, "-c", UNDRAWN, "plan", str(free_map), "--start", "0,0", "--goal", "5,3"]
     command += ["--pop-size", "50", "--generations", "60", "-o", str(tmp_path / "out")]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=slave)
     assert process.wait(timeout=120) == 0
