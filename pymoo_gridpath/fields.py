@@ -303,6 +303,10 @@ class BoxedField:
             self._whole = np.asarray(self._work_out())
         return self._whole if dtype is None else self._whole.astype(dtype)
 
+    def within(self, box: Box) -> np.ndarray:
+        """Return the values in a box, shape (height, width)."""
+        return self.inside if box == self.box else np.asarray(self)[box.slices]
+
     def take(self, cells: np.ndarray) -> np.ndarray:
         """Return the values of cells, given by ``y * width + x`` in the grid."""
         x, y = cells % self._width - self.box.x0, cells // self._width - self.box.y0

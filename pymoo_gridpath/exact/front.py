@@ -178,11 +178,11 @@ def better_fronts(
         refuse(allowance, "a potential limit")
     meter = Meter(budget or Budget())
     usable, most = ~problem.grid.occupied[moves.box.slices].ravel(), max_cells(problem)
-    objectives: list[Objective] = [problem.objectives[k] for k in summed]
+    objectives: list[Objective] = [Known(problem, k, moves.box) for k in summed]
     levels = [cell_levels(problem.objectives[k], problem.grid, moves.box) for k in worst]
     if levels:
-        # What else is to be minimised is searched many times; of paths that are equal in all, the shortest will do.
-        objectives = [Known(one, problem.grid, moves.box) if one.additive else one for one in objectives or [Length()]]
+        # Of paths that are equal in all, the shortest will do.
+        objectives = objectives or [Length()]
 
     def search(moves, usable, most=None):
         return parts_of(problem, objectives, moves, usable, meter, allowance, set(), most)

@@ -26,7 +26,8 @@ DONE, HEAP_FULL, CLOSED_FULL, FOUND_FULL, LISTS_FULL, JOINED_FULL, PAUSED = rang
 # Places in the array of counts; a search may have more of its own.
 N_OPEN, N_CLOSED, N_FOUND, N_POPPED = range(4)
 
-_GROWTH = 1.25
+# By how much arrays grow that are larger than so many bytes.
+_GROWTH, _LARGE = 1.25, 2**22
 
 
 class Front(NamedTuple):
@@ -141,8 +142,8 @@ class LabelSearch(ABC):
 
 
 def _grow(array: np.ndarray) -> None:
-    """Give an array a quarter more rows, without a copy beside it where the system can do so."""
-    rows = int(len(array) * _GROWTH) + 64
+    """Give an array twice as many rows, or a quarter more if it is large, without a copy beside it where the system can."""
+    rows = 2 * len(array) if array.nbytes < _LARGE else int(len(array) * _GROWTH)
     array.resize((rows, *array.shape[1:]), refcheck=False)
 
 

@@ -14,19 +14,20 @@ import numpy as np
 
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.grid import Box, OccupancyGrid
-from pymoo_gridpath.objectives import Objective, field_of, levels_of, moves_of
+from pymoo_gridpath.objectives import Objective, field_of, levels_of
 from pymoo_gridpath.search import Moves
 from pymoo_gridpath.search.bottleneck import best_level
 
 
 class Known(Objective):
-    """An objective with the costs that it has on a grid, or in a box of it, worked out once for many searches."""
+    """An objective of a problem with the costs that it has in a box of the grid, worked out once for all searches."""
 
     local = True
 
-    def __init__(self, objective: Objective, grid: OccupancyGrid, box: Box):
+    def __init__(self, problem, number: int, box: Box):
+        objective = problem.objectives[number]
         self.name, self.label, self.turn_cost = objective.name, objective.label, objective.turn_cost
-        self._field, self._moves = field_of(objective, grid, box), moves_of(objective, grid)
+        self._field, self._moves = problem._costs_in(number, box)
 
     def field(self, grid):
         return self._field

@@ -98,6 +98,14 @@ def _best(legal, offsets, step, field, enter, start, goal, ahead):
     while k < n:
         if n + 8 > len(closed):
             closed = grown(closed)
+        k, n = _add_next(legal, offsets, step, field, enter, goal, ahead, seen, closed, k, n)
+    return closed[:n].copy()
+
+
+@kernel
+def _add_next(legal, offsets, step, field, enter, goal, ahead, seen, closed, k, n):
+    """Add the cells behind the ``n`` that are closed, from number ``k`` on, as long as there is room; return both then."""
+    while k < n and n + 8 <= len(closed):
         cell = np.int64(closed[k, 0])
         if cell != goal:
             for m in range(8):
@@ -113,4 +121,4 @@ def _best(legal, offsets, step, field, enter, start, goal, ahead):
                     closed[n, 1] = k
                     n += 1
         k += 1
-    return closed[:n].copy()
+    return k, n

@@ -10,7 +10,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.exact.budget import Meter
 from pymoo_gridpath.exact.costs import Costs
-from pymoo_gridpath.exact.label_lists import covered, empty_lists, has_room, insert
+from pymoo_gridpath.exact.label_lists import THIRD, covered, empty_lists, has_room, insert
 from pymoo_gridpath.exact.labels import (
     DONE,
     LISTS_FULL,
@@ -80,7 +80,7 @@ def fronts_of_three(
 
 
 class _Search(LabelSearch):
-    """The search, with a list of what is non-dominated for each state."""
+    """The search, with a list of what is non-dominated for each cell."""
 
     growing: ClassVar[dict[int, str]] = LabelSearch.growing | {LISTS_FULL: "rows"}
     pops_at_a_time = 2**17
@@ -97,7 +97,7 @@ class _Search(LabelSearch):
             self.bounds[..., 3] = self._bound(_steps_alone(costs), meter)
         self.bounds = self.bounds.reshape(-1, 4)
         # The last list is that of the paths found.
-        self.lists, self.rows, self.taken = empty_lists(len(self.bounds) + 1)
+        self.lists, self.rows, self.taken = empty_lists(moves.n_cells + 1, self.n_headings)
         self.begin()
 
     def _bound(self, costs: Costs, meter: Meter) -> np.ndarray:
@@ -191,7 +191,7 @@ def search_three(
         1 and how many steps a path may take, or 0 and 0 if they are not counted.
     start, goal : int
     lists, rows, taken
-        Of (g2, g3, steps) closed at each state and, the last list, of (f2, f3, 0) of the paths found; see `empty_lists`.
+        Of (g2, g3, steps) closed at each cell and, the last list, of (f2, f3, 0) of the paths found; see `empty_lists`.
     heap, closed, found
         See `LabelSearch`; keys are f1, f2, ``2 * f3`` (plus 1 at the goal, which so comes after all that is equal, see
         `smoothest_paths`), and the least steps of the whole path.
@@ -201,13 +201,14 @@ def search_three(
     """
     n, n_closed = counts[N_OPEN], counts[N_CLOSED]
     ends = len(lists) - 1
+    third = np.empty(rows.shape[1] - THIRD, dtype=np.int64)
     status = DONE
     pops = 0
     while n > 0:
         status = full(n, n_closed, counts[N_FOUND], heap, closed, found)
         if status != DONE:
             break
-        # Lists of the eight headings at most.
+        # Of the cell, for each heading at most.
         if not has_room(rows, taken, 8):
             status = LISTS_FULL
             break
@@ -225,11 +226,13 @@ def search_three(
         g2 = f2 - bounds[state, 1]
         g3 = f3 - bounds[state, 2]
         steps = all_steps - bounds[state, 3]
-        if covered(lists, rows, state, g2, g3, steps) or covered(lists, rows, ends, f2, f3, 0):
+        here = heading if with_heading else 0
+        if covered(lists, rows, cell, here, g2, g3, steps) or covered(lists, rows, ends, 0, f2, f3, 0):
             continue
         close(closed, n_closed, load)
         if cell == goal:
-            insert(lists, rows, taken, ends, f2, f3, 0)
+            third[:] = f3
+            insert(lists, rows, taken, ends, f2, third, 0)
             found[counts[N_FOUND], 0] = n_closed
             found[counts[N_FOUND], 1] = f1
             found[counts[N_FOUND], 2] = f2
@@ -237,15 +240,20 @@ def search_three(
             counts[N_FOUND] += 1
             n_closed += 1
             continue
+        third[:] = g3
         if with_heading:
             # Whoever turns on the spot from this heading to another is no worse than who came with that one and higher costs;
             # those who come later have no lower first cost if turning costs nothing in it.
             for h in range(8):
-                if on_the_spot[0, heading, h] == 0:
-                    second, third = g2 + on_the_spot[1, heading, h], g3 + on_the_spot[2, heading, h]
-                    insert(lists, rows, taken, 8 * cell + h, second, third, steps)
-        else:
-            insert(lists, rows, taken, cell, g2, g3, steps)
+                at_once = on_the_spot[0, heading, h] == 0 and on_the_spot[1, heading, h] == 0
+                third[h] = g3 + on_the_spot[2, heading, h] if at_once else UNREACHABLE
+        insert(lists, rows, taken, cell, g2, third, steps)
+        if with_heading:
+            for h in range(8):
+                if on_the_spot[0, heading, h] == 0 and on_the_spot[1, heading, h] > 0:
+                    third[:] = UNREACHABLE
+                    third[h] = g3 + on_the_spot[2, heading, h]
+                    insert(lists, rows, taken, cell, g2 + on_the_spot[1, heading, h], third, steps)
         g1 = f1 - bounds[state, 0]
         from_before = legal[cell - offsets[heading]]
         last = heading if with_heading else 8
@@ -270,11 +278,11 @@ def search_three(
             if enter is not None:
                 next2 += enter[1, next_cell, m]
                 next3 += enter[2, next_cell, m]
-            if covered(lists, rows, next_state, next2, next3, next_steps):
+            if covered(lists, rows, next_cell, m if with_heading else 0, next2, next3, next_steps):
                 continue
             next_f2 = next2 + bounds[next_state, 1]
             next_f3 = next3 + bounds[next_state, 2]
-            if covered(lists, rows, ends, next_f2, next_f3, 0):
+            if covered(lists, rows, ends, 0, next_f2, next_f3, 0):
                 continue
             load = load_of(next_cell, m, n_closed)
             push_four(heap, n, next_f1, next_f2, 2 * next_f3 + (next_cell == goal), next_all, load)

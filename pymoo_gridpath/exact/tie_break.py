@@ -166,7 +166,7 @@ def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field
     The slot of each of those labels is filled in.
     """
     labels = np.empty(1024, dtype=np.int32)
-    parents = np.full((1024, 8), -1, dtype=np.int32)
+    parents = np.empty((1024, 8), dtype=np.int32)
     n = 0
     i = 0
     n_ends = 0
@@ -182,18 +182,27 @@ def _leading_to(ends, at_a_time, cell, spent, first, legal, offsets, step, field
             labels = room(labels, n + 8)
             if i == len(parents):
                 parents = grown(parents)
-            _find_parents(labels[i], cell, spent, first, legal, offsets, step, field, enter, parents[i])
-            for m in range(8):
-                parent = parents[i, m]
-                if parent < 0:
-                    continue
-                if slot[parent] < 0:
-                    slot[parent] = n
-                    labels[n] = parent
-                    n += 1
-                parents[i, m] = slot[parent]
-            i += 1
+            grid = legal, offsets, step, field, enter
+            i, n = _add_parents(i, n, labels, parents, cell, spent, first, *grid, slot)
     return labels[:n].copy(), parents[:n].copy(), n_ends
+
+
+@kernel
+def _add_parents(i, n, labels, parents, cell, spent, first, legal, offsets, step, field, enter, slot):
+    """Add the parents of ``n`` labels, from number ``i`` on, as long as there is room; return both numbers then."""
+    while i < n and i < len(parents) and n + 8 <= len(labels):
+        _find_parents(labels[i], cell, spent, first, legal, offsets, step, field, enter, parents[i])
+        for m in range(8):
+            parent = parents[i, m]
+            if parent < 0:
+                continue
+            if slot[parent] < 0:
+                slot[parent] = n
+                labels[n] = parent
+                n += 1
+            parents[i, m] = slot[parent]
+        i += 1
+    return i, n
 
 
 @kernel

@@ -240,25 +240,35 @@ def join(states, spent, rows, least, low, shift):
     joined : int64, shape (n, 4)
         Number of the state where a path goes on, of the way, and both costs of the whole, or a little more.
     """
-    joined = np.empty((16, 4), dtype=np.int64)
+    # Each path may go on along as many.
+    joined = np.empty((16 + len(rows), 4), dtype=np.int64)
     n = 0
-    for i in range(len(states)):
-        if states[i] < 0:
-            continue
-        for j in range(len(rows)):
-            if rows[j, states[i], FIRST] == np.inf:
+    i = 0
+    while i < len(states):
+        i, n = _join(states, spent, rows, least, low, shift, i, joined, n)
+        if i < len(states):
+            joined = grown(joined)
+    return joined[:n].copy()
+
+
+@kernel
+def _join(states, spent, rows, least, low, shift, i, joined, n):
+    """Let paths from number ``i`` on go on, as far as there is room; return the first that did not, and how many are joined."""
+    while i < len(states) and n + len(rows) <= len(joined):
+        state = states[i]
+        for j in range(len(rows) if state >= 0 else 0):
+            if rows[j, state, FIRST] == np.inf:
                 continue
-            first = spent[i, 0] + np.int64(rows[j, states[i], FIRST])
-            second = spent[i, 1] + np.int64(rows[j, states[i], SECOND])
+            first = spent[i, 0] + np.int64(rows[j, state, FIRST])
+            second = spent[i, 1] + np.int64(rows[j, state, SECOND])
             if lower(least, low, shift, first, second):
-                if n == len(joined):
-                    joined = grown(joined)
                 joined[n, 0] = i
                 joined[n, 1] = j
                 joined[n, 2] = first
                 joined[n, 3] = second
                 n += 1
-    return joined[:n].copy()
+        i += 1
+    return i, n
 
 
 @kernel

@@ -19,9 +19,11 @@ from pymoo_gridpath.grid import Box, Cell, OccupancyGrid, check_grid
 from pymoo_gridpath.grid.picture import scene_of
 from pymoo_gridpath.maps.queries import query_in_metres
 from pymoo_gridpath.objectives import (
+    MoveCosts,
     Objective,
     avoiding_costs,
     boxed_field_of,
+    field_of,
     make_objectives,
     prepared,
     visiting_costs,
@@ -392,6 +394,19 @@ class GridPathProblem(Problem):
                 )
             F[:, k] = values
         return F
+
+    def _costs_in(self, number: int, box: Box) -> tuple[np.ndarray | None, MoveCosts | None]:
+        """Return the costs of the cells of a box, and of moves, that an objective has, as far as it has any."""
+        field, moves = self._prepared[number]
+        if isinstance(field, BoxedField):
+            return field.within(box), moves
+        if field is not None:
+            # By the index of the cell, unless the representation has it in a form of its own.
+            is_plain = field.shape == (self.grid.occupied.size,)
+            field = (
+                field.reshape(self.grid.shape)[box.slices] if is_plain else field_of(self.objectives[number], self.grid, box)
+            )
+        return field, moves
 
     def _without_nan(self, F: np.ndarray) -> np.ndarray:
         """Return scores if they are numbers."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from pymoo_gridpath.compiled import kernel
-from pymoo_gridpath.search.arrays import grown
 from pymoo_gridpath.search.heap import drop_first, push
 from pymoo_gridpath.search.moves import Moves
 
@@ -36,7 +35,8 @@ def best_level(moves: Moves, levels: np.ndarray, start: int, goal: int) -> int:
 @kernel
 def _best_level(legal, offsets, levels, start, goal):
     seen = np.zeros(len(legal), dtype=np.uint8)
-    heap = np.empty((1024, 3), dtype=np.int64)
+    # Each cell comes once.
+    heap = np.empty((len(legal), 3), dtype=np.int64)
     push(heap, 0, levels[start], 0, start)
     n = 1
     seen[start] = 1
@@ -46,8 +46,6 @@ def _best_level(legal, offsets, levels, start, goal):
             return level
         drop_first(heap, n)
         n -= 1
-        if n + 8 > len(heap):
-            heap = grown(heap)
         for m in range(8):
             other = cell + offsets[m]
             # The first to come to a cell comes by the lowest level, since they come in that order.

@@ -97,7 +97,6 @@ def _best_first(legal, offsets, width, start, goal, rule, greedy):
     cost, came = np.empty(len(legal), dtype=np.int64), np.empty(len(legal), dtype=np.int8)
     # 1 for cells that are opened, 2 for those that are closed.
     state = np.zeros(len(legal), dtype=np.uint8)
-    gx, gy = goal % width, goal // width
     heap = np.empty((1024, 3), dtype=np.int64)
     push(heap, 0, 0, 0, start)
     n = 1
@@ -106,6 +105,18 @@ def _best_first(legal, offsets, width, start, goal, rule, greedy):
     counts = np.zeros(4, dtype=np.int64)
     counts[0] = 1
     while n > 0:
+        if n + 8 > len(heap):
+            heap = grown(heap)
+        n = _take(legal, offsets, width, goal, rule, greedy, cost, came, state, counts, heap, n)
+    counts[3] = counts[0]
+    return back(offsets, came, start, goal, state[goal] == 2), counts
+
+
+@kernel
+def _take(legal, offsets, width, goal, rule, greedy, cost, came, state, counts, heap, n):
+    """Take cells from a heap of ``n`` entries while there is room, and return how many it has then; none at the goal."""
+    gx, gy = goal % width, goal // width
+    while n > 0 and n + 8 <= len(heap):
         cell = heap[0, 2]
         drop_first(heap, n)
         n -= 1
@@ -114,9 +125,7 @@ def _best_first(legal, offsets, width, start, goal, rule, greedy):
         state[cell] = 2
         counts[1] += 1
         if cell == goal:
-            break
-        if n + 8 > len(heap):
-            heap = grown(heap)
+            return 0
         steps, so_far = legal[cell], cost[cell]
         dx, dy = gx - cell % width, gy - cell // width
         for m in range(8):
@@ -139,8 +148,7 @@ def _best_first(legal, offsets, width, start, goal, rule, greedy):
             else:
                 push(heap, n, total + left, left, other)
             n += 1
-    counts[3] = counts[0]
-    return back(offsets, came, start, goal, state[goal] == 2), counts
+    return n
 
 
 @kernel

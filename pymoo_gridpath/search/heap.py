@@ -40,11 +40,9 @@ def drop_first(heap, n):
         down = 2 * i + 1
         if down >= last:
             break
+        # Without a branch, which processors would guess wrong half the time; what was the last entry is still in its place.
         right = down + 1
-        if right < last and (
-            heap[right, 0] < heap[down, 0] or (heap[right, 0] == heap[down, 0] and heap[right, 1] < heap[down, 1])
-        ):
-            down = right
+        down += (heap[right, 0] < heap[down, 0]) | ((heap[right, 0] == heap[down, 0]) & (heap[right, 1] < heap[down, 1]))
         if first < heap[down, 0] or (first == heap[down, 0] and second <= heap[down, 1]):
             break
         heap[i, 0] = heap[down, 0]
@@ -58,14 +56,9 @@ def drop_first(heap, n):
 
 @kernel
 def _before(a, i, first, second, third, fourth):
-    """Whether entry i of a heap comes before four keys."""
-    if a[i, 0] != first:
-        return a[i, 0] < first
-    if a[i, 1] != second:
-        return a[i, 1] < second
-    if a[i, 2] != third:
-        return a[i, 2] < third
-    return a[i, 3] < fourth
+    """Whether entry i of a heap comes before four keys; without a branch."""
+    last_two = (a[i, 2] < third) | ((a[i, 2] == third) & (a[i, 3] < fourth))
+    return (a[i, 0] < first) | ((a[i, 0] == first) & ((a[i, 1] < second) | ((a[i, 1] == second) & last_two)))
 
 
 @kernel
@@ -108,8 +101,7 @@ def drop_first_of_four(heap, n):
         down = 2 * i + 1
         if down >= last:
             break
-        if down + 1 < last and _before(heap, down + 1, heap[down, 0], heap[down, 1], heap[down, 2], heap[down, 3]):
-            down += 1
+        down += _before(heap, down + 1, heap[down, 0], heap[down, 1], heap[down, 2], heap[down, 3])
         if not _before(heap, down, first, second, third, fourth):
             break
         _move(heap, down, i)

@@ -139,7 +139,6 @@ def _jump(legal, offsets, cell, m, goal, rule, seen, counts):
 def _jump_points(legal, offsets, width, start, goal, rule, heuristic):
     cost, came = np.empty(len(legal), dtype=np.int64), np.full(len(legal), -1, dtype=np.int64)
     state, seen = np.zeros(len(legal), dtype=np.uint8), np.zeros(len(legal), dtype=np.bool_)
-    gx, gy = goal % width, goal // width
     heap = np.empty((1024, 3), dtype=np.int64)
     push(heap, 0, 0, 0, start)
     n = 1
@@ -148,6 +147,18 @@ def _jump_points(legal, offsets, width, start, goal, rule, heuristic):
     counts = np.zeros(4, dtype=np.int64)
     counts[0] = 1
     while n > 0:
+        if n + 8 > len(heap):
+            heap = grown(heap)
+        n = _take(legal, offsets, width, goal, rule, heuristic, cost, came, state, seen, counts, heap, n)
+    counts[3] = np.count_nonzero(seen)
+    return _between(offsets, width, came, start, goal, state[goal] == 2), counts
+
+
+@kernel
+def _take(legal, offsets, width, goal, rule, heuristic, cost, came, state, seen, counts, heap, n):
+    """Take jump points from a heap of ``n`` entries while there is room, and return how many it has then; none at the goal."""
+    gx, gy = goal % width, goal // width
+    while n > 0 and n + 8 <= len(heap):
         cell = heap[0, 2]
         drop_first(heap, n)
         n -= 1
@@ -157,9 +168,7 @@ def _jump_points(legal, offsets, width, start, goal, rule, heuristic):
         seen[cell] = True
         counts[1] += 1
         if cell == goal:
-            break
-        if n + 8 > len(heap):
-            heap = grown(heap)
+            return 0
         m = 8 if came[cell] < 0 else towards(width, came[cell], cell)
         kept = kept_headings(legal, offsets, cell, m, rule)
         for m in range(8):
@@ -180,8 +189,7 @@ def _jump_points(legal, offsets, width, start, goal, rule, heuristic):
             left = estimate(heuristic, gx - other % width, gy - other // width)
             push(heap, n, total + left, left, other)
             n += 1
-    counts[3] = np.count_nonzero(seen)
-    return _between(offsets, width, came, start, goal, state[goal] == 2), counts
+    return n
 
 
 @kernel

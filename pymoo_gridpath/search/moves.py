@@ -17,10 +17,16 @@ _WORTH_A_PART = 0.8
 def taken_backwards(legal: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     """Return the legal steps that lead back along others; see `Moves` for both arrays."""
     back = np.zeros_like(legal)
-    for m in range(8):
-        leads = np.flatnonzero(legal >> np.uint8(m) & 1)
-        back[leads + offsets[m]] |= np.uint8(1 << OPPOSITE[m])
+    for m, offset in enumerate(offsets.tolist()):
+        at, to = _ends_of_steps(len(legal), offset)
+        back[to] |= (legal[at] >> np.uint8(m) & np.uint8(1)) << np.uint8(OPPOSITE[m])
     return back
+
+
+def _ends_of_steps(n_cells: int, offset: int) -> tuple[slice, slice]:
+    """Return the indices of the cells where steps begin and where they end, as if each row ran into the next one."""
+    later, earlier = slice(abs(offset), None), slice(max(0, n_cells - abs(offset)))
+    return (earlier, later) if offset > 0 else (later, earlier)
 
 
 def uncut(grid: OccupancyGrid, free: np.ndarray) -> np.ndarray:
@@ -118,9 +124,8 @@ class Moves:
         kept = copy.copy(self)
         one, leads = np.ascontiguousarray(usable).view(np.uint8), np.zeros_like(self.legal)
         for m, offset in enumerate(self.offsets.tolist()):
-            # Rows run into one another, but no step leads beyond the edge.
-            later, earlier = slice(abs(offset), None), slice(max(0, len(one) - abs(offset)))
-            at, to = (earlier, later) if offset > 0 else (later, earlier)
+            # No step leads beyond the edge.
+            at, to = _ends_of_steps(len(one), offset)
             leads[at] |= one[to] * np.uint8(1 << m)
         leads &= self.legal
         leads *= one

@@ -66,16 +66,25 @@ def _way_to(legal, offsets, start, wanted):
     push(heap, 0, 0, start, start)
     n = 1
     cost[start] = 0
-    while n > 0:
+    reached = -1
+    while n > 0 and reached < 0:
+        if n + 8 > len(heap):
+            heap = grown(heap)
+        n, reached = _take(legal, offsets, wanted, cost, came, heap, n)
+    return back(offsets, came, start, reached, True) if reached >= 0 else np.empty(0, dtype=np.int64)
+
+
+@kernel
+def _take(legal, offsets, wanted, cost, came, heap, n):
+    """Take cells from a heap of ``n`` entries while there is room; return how many it has then, and a wanted cell, or -1."""
+    while n > 0 and n + 8 <= len(heap):
         so_far, cell = heap[0, 0], heap[0, 2]
         drop_first(heap, n)
         n -= 1
         if so_far > cost[cell]:
             continue
         if wanted[cell]:
-            return back(offsets, came, start, cell, True)
-        if n + 8 > len(heap):
-            heap = grown(heap)
+            return n, cell
         for m in range(8):
             if not (legal[cell] >> m) & 1:
                 continue
@@ -86,4 +95,4 @@ def _way_to(legal, offsets, start, wanted):
                 came[other] = m
                 push(heap, n, total, other, other)
                 n += 1
-    return np.empty(0, dtype=np.int64)
+    return n, -1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -23,6 +22,9 @@ _MOST_LISTS = 2**14
 
 # The dearest step leads so many lists ahead, as a power of two, where they are taken from in order: many steps are far cheaper.
 _LIST_BITS = 10
+
+# Why the kernel returned.
+_DONE, _PAUSED, _HEAP_FULL = range(3)
 
 
 def backward_costs(
@@ -108,7 +110,7 @@ class Backward:
         self.ahead = np.full(self.cost.shape[1], -1, dtype=np.int8)
         self.cost[:, slice(8 * goal, 8 * goal + 8) if with_heading else goal] = 0
         # Weights are applied on the way, to what each step takes.
-        width, n_lists, in_order = self._lists()
+        width, n_lists, in_order = self._lists(goal)
         self._shift = width.bit_length() - 1
         self._first_of, self._links = np.full(n_lists, -1, dtype=np.int32), np.full((2, self.cost.shape[1]), -1, dtype=np.int32)
         goals = np.arange(8 * goal, 8 * goal + 8) if with_heading else np.array([goal])
@@ -116,11 +118,11 @@ class Backward:
         self._links[0, goals[:-1]], self._links[1, goals[1:]] = goals[1:], goals[:-1]
         self._blocks = np.zeros(max(n_lists >> 6, 1), dtype=np.int32)
         self._blocks[0] = len(goals)
-        self._in_order, self._heap = in_order or None, np.empty((64, 3), dtype=np.int64)
+        self._in_order, self._heap = in_order or None, np.empty((1024, 3), dtype=np.int64)
         self._counts = np.array([0, len(goals), 0])
         self.spent = None if spent is None else np.atleast_2d(spent)
 
-    def _lists(self) -> tuple[int, int, bool]:
+    def _lists(self, goal: int) -> tuple[int, int, bool]:
         """Return the width in first cost of the lists that states are taken from, how many, and whether in order from each.
 
         From a list that is no wider than the least step they may be taken in any order: no step leads from it to itself. That
@@ -132,6 +134,9 @@ class Backward:
                 most += int(costs[0].max())
             elif costs is not None and self.weights is not None:
                 most += sum(int(weight * int(part.max())) + 1 for weight, part in zip(self.weights, costs, strict=True))
+        if self.weights is None and not self.with_heading:
+            # Steps lead to the goal, and to cells that steps lead on from.
+            least += int(min(self.field[0, goal], self.field[0].min(initial=UNREACHABLE, where=self.moves.legal > 0)))
         width = 1 << (max(least, 1).bit_length() - 1)
         any_order = ((least > 0 and not self.with_heading) or self._alone) and most // width + 2 <= _MOST_LISTS
         if not any_order:
@@ -163,31 +168,44 @@ class Backward:
             costs = self.step, self.field, self.enter, 8 if self.with_heading else None
             costs = *costs, self.weights is not None, self.weights or (1.0, 0.0), self.spent
             lists = self._first_of, self._blocks, self._links, self._heap, self._counts, self._shift, self._in_order
-            self._heap, done = _take(
-                moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS
-            )
-            if done or (stop is not None and stop()):
+            status = _take(moves.legal, moves.offsets, *costs, self.limit, self.cost, self.ahead, *lists, until, beyond, _POPS)
+            if status == _HEAP_FULL:
+                self._heap = grown(self._heap)
+            elif status == _DONE or (stop is not None and stop()):
                 break
 
     def first_step(self, cell: int) -> tuple[int, int]:
         """Return the first cost of the cheapest path that begins in a cell, and the heading of its first step, -1 for none."""
-        best, first, weights = (UNREACHABLE, UNREACHABLE), -1, self.weights
-        steps, legal, offsets = self.step[:, 8].tolist(), int(self.moves.legal[cell]), self.moves.offsets.tolist()
-        for m in range(8):
-            if not legal >> m & 1:
-                continue
-            after = cell + offsets[m]
-            one, two = self.cost[:, 8 * after + m if self.with_heading else after].tolist()
-            one, two = one + steps[0][m], two + steps[1][m]
-            for costs in (self.field[:, after], None if self.enter is None else self.enter[:, after, m]):
-                if costs is not None:
-                    entered = costs.tolist()
-                    if weights is not None:
-                        entered = math.floor(weights[0] * entered[0] + weights[1] * entered[1]), entered[0]
-                    one, two = one + entered[0], two + entered[1]
-            if (one, two) < best:
-                best, first = (one, two), m
-        return best[0], first
+        costs = self.step, self.field, self.enter, self.with_heading, self.weights is not None, self.weights or (1.0, 0.0)
+        return first_step(self.moves.legal, self.moves.offsets, *costs, self.cost, cell)
+
+
+@kernel
+def first_step(legal, offsets, step, field, enter, with_heading, fused, weights, cost, cell):
+    """Return the first cost of the cheapest path that begins in a cell, and the heading of its first step, -1 for none."""
+    best1 = best2 = UNREACHABLE
+    first = -1
+    for m in range(8):
+        if not (legal[cell] >> m) & 1:
+            continue
+        after = cell + offsets[m]
+        state = 8 * after + m if with_heading else after
+        one, two = cost[0, state] + step[0, 8, m], cost[1, state] + step[1, 8, m]
+        if fused:
+            one += np.int64(np.floor(weights[0] * field[0, after] + weights[1] * field[1, after]))
+            two += field[0, after]
+        else:
+            one += field[0, after]
+            two += field[1, after]
+        if enter is not None and fused:
+            one += np.int64(np.floor(weights[0] * enter[0, after, m] + weights[1] * enter[1, after, m]))
+            two += enter[0, after, m]
+        elif enter is not None:
+            one += enter[0, after, m]
+            two += enter[1, after, m]
+        if one < best1 or (one == best1 and two < best2):
+            best1, best2, first = one, two, m
+    return best1, first
 
 
 def _sums(costs: np.ndarray, weights: tuple[float, float]) -> np.ndarray:
@@ -246,18 +264,16 @@ def _take(
 
     Returns
     -------
-    heap : int64, shape (n, 3)
-        The same, or a larger one.
-    done : bool
-        Whether the search has come as far as it is to.
+    status : int
+        Whether the search has come as far as it is to, there is no room in the heap, or so many states have been taken.
     """
     mask = len(lists) - 1
     pops = 0
     while pops < max_pops:
+        here = counts[0] & mask
         if counts[2] == 0:
             if counts[1] == 0:
-                return heap, True
-            here = counts[0] & mask
+                return _DONE
             if lists[here] < 0:
                 turn = counts[0]
                 while lists[turn & mask] < 0:
@@ -268,13 +284,16 @@ def _take(
                 here = turn & mask
                 reached = turn << shift
                 if reached >= beyond or (until >= 0 and reached > cost[0, until]):
-                    return heap, True
-            if in_order is not None:
-                heap = _moved(lists, blocks, links, here, cost, heap, counts)
+                    return _DONE
         if in_order is not None:
+            if lists[here] >= 0:
+                move_to_heap(lists, blocks, links, here, cost, heap, counts)
+            # As many as one state leads to, or the whole list.
+            if counts[2] + 8 > len(heap) or lists[here] >= 0:
+                return _HEAP_FULL
             first, second, state = heap[0, 0], heap[0, 1], heap[0, 2]
             if first >= beyond or (until >= 0 and first > cost[0, until]):
-                return heap, True
+                return _DONE
             drop_first(heap, counts[2])
             counts[2] -= 1
             if first > cost[0, state] or second > cost[1, state]:
@@ -327,8 +346,6 @@ def _take(
                     if known < UNREACHABLE and known >> shift != counts[0]:
                         _unlink(lists, blocks, links, (known >> shift) & mask, origin)
                         counts[1] -= 1
-                    if counts[2] == len(heap):
-                        heap = grown(heap)
                     push(heap, counts[2], total1, total2, origin)
                     counts[2] += 1
                     continue
@@ -345,23 +362,22 @@ def _take(
                     links[1, lists[here]] = origin
                 lists[here] = origin
                 blocks[here >> 6] += 1
-    return heap, counts[1] == 0 and counts[2] == 0
+    return _DONE if counts[1] == 0 and counts[2] == 0 else _PAUSED
 
 
 @kernel
-def _moved(lists, blocks, links, number, cost, heap, counts):
-    """Move all states of a list to the heap, and return it."""
+def move_to_heap(lists, blocks, links, number, cost, heap, counts):
+    """Move the states of a list to the heap, as many as there is room for."""
     state = np.int64(lists[number])
-    while state >= 0:
-        if counts[2] == len(heap):
-            heap = grown(heap)
+    while state >= 0 and counts[2] < len(heap):
         push(heap, counts[2], cost[0, state], cost[1, state], state)
         counts[2] += 1
         counts[1] -= 1
         blocks[number >> 6] -= 1
         state = np.int64(links[0, state])
-    lists[number] = -1
-    return heap
+    lists[number] = state
+    if state >= 0:
+        links[1, state] = -1
 
 
 @kernel
