@@ -285,8 +285,10 @@ def array(
     fits = shape is None or (
         found.ndim == len(shape) and all(want is None or have == want for have, want in zip(found.shape, shape, strict=True))
     )
-    # An empty list has the type float, whatever it was to hold.
-    if not fits or (found.dtype.kind not in kinds and not (found.size == 0 and found.dtype.kind == "f")):
+    if found.size == 0 and found.dtype.kind == "f" and "f" not in kinds:
+        # An empty list has the type float, whatever it was to hold.
+        found = found.astype(bool if kinds == "b" else np.int64)
+    if not fits or found.dtype.kind not in kinds:
         given = shown(found) if found.dtype.kind != "O" and found.ndim else shown(value)
         raise error(f"{name} is {given}, expected {expected}")
     if finite and found.dtype.kind == "f" and not np.isfinite(found).all():

@@ -25,9 +25,14 @@ def is_want_of_memory(error: BaseException | None) -> bool:
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True
-        if isinstance(error, SystemError | RuntimeError | ImportError) and any(text in str(error).lower() for text in _TEXTS):
+        # Of the system's own errors, those without a number alone are the loader's; others name files, which may be called so.
+        may_say = isinstance(error, SystemError | RuntimeError | ImportError) or (
+            type(error) is OSError and error.errno is None
+        )
+        if may_say and any(text in str(error).lower() for text in _TEXTS):
             return True
-        error = error.__cause__
+        # llvmlite says something else while it handles what the loader said.
+        error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)
     return False
 
 

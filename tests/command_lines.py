@@ -14,6 +14,17 @@ from pymoo_gridpath.cli import main
 FAST = ["--pop-size", "30", "--generations", "10"]
 
 
+#: What a process runs that draws nothing: its figures are empty. What follows is its arguments.
+UNDRAWN = """
+import sys
+from matplotlib.figure import Figure
+from pymoo_gridpath.cli import main
+
+Figure.savefig = lambda figure, *args, **kwargs: None
+sys.exit(main(sys.argv[1:]))
+"""
+
+
 def run_process(*arguments, cwd=None, **options):
     command = [sys.executable, "-m", "pymoo_gridpath.cli", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=500, check=False, **options)

@@ -26,11 +26,22 @@ _COORDINATOR = """
 import pickle, signal, sys
 from pymoo_gridpath.study.running.processes import LocalProcesses
 from pymoo_gridpath.study.running.runner import run_study
+from pymoo_gridpath.study.running.store import Store
+
+def hold_after(most):
+    def write_and_hold(self, key, data, write=Store.write, written=[]):
+        write(self, key, data)
+        written.append(key)
+        if len(written) == most:
+            signal.pause()
+    Store.write = write_and_hold
 
 if __name__ == "__main__":
     # Processes that are started in the background may have been told to ignore it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    plan, folder, n_processes = sys.argv[1:]
+    plan, folder, n_processes, most = sys.argv[1:]
+    if most != "all":
+        hold_after(int(most))
     with open(plan, "rb") as file:
         plan = pickle.load(file)
     executor = LocalProcesses(int(n_processes)) if int(n_processes) else None
@@ -92,13 +103,13 @@ def with_bomb(plan: Plan, problem: int = -1) -> Plan:
 
 
 class Coordinator:
-    """A process that runs a plan in a folder."""
+    """A process that runs a plan in a folder, or so much of it as it may store: then it holds until it is killed."""
 
-    def __init__(self, plan: Plan, folder: Path, n_processes: int = 2):
+    def __init__(self, plan: Plan, folder: Path, n_processes: int = 2, most: int | None = None):
         script, pickled = folder.parent / "coordinator.py", folder.parent / "plan.pickle"
         script.write_text(_COORDINATOR)
         pickled.write_bytes(pickle.dumps(plan))
-        command = [sys.executable, str(script), str(pickled), str(folder), str(n_processes)]
+        command = [sys.executable, str(script), str(pickled), str(folder), str(n_processes), str(most or "all")]
         # In a session of its own, so that signals reach it and its workers as those of a terminal do.
         self.process = subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import sys
 from fractions import Fraction
@@ -15,12 +16,15 @@ from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 
 from pymoo_gridpath import GridPathProblem, OccupancyGrid, checks
+from pymoo_gridpath.algorithms import make_algorithm
 from pymoo_gridpath.decision import TradeOffSet, knee_point
 from pymoo_gridpath.errors import GridError, GridPathError, MapError
 from pymoo_gridpath.exact import exact_front
-from pymoo_gridpath.maps import load_shipped
+from pymoo_gridpath.maps import load_map, load_shipped, read_scen
+from pymoo_gridpath.maps.queries import Query, ends_of
 from pymoo_gridpath.objectives import Objective
-from pymoo_gridpath.operators import path_operators
+from pymoo_gridpath.operators import BitwiseMutation, path_operators
+from pymoo_gridpath.plotting import plot_convergence
 from pymoo_gridpath.representations import REPRESENTATIONS, CellSequence, make_representation
 from pymoo_gridpath.study.running.store import Store
 
@@ -50,6 +54,9 @@ class Own(Objective):
 
 class Endless:
     def __repr__(self):
+        raise RuntimeError
+
+    def __iter__(self):
         raise RuntimeError
 
 
@@ -123,6 +130,33 @@ def test_of_too_many_items_none_is_looked_at():
     with pytest.raises(GridPathError, match="expected two"):
         checks.items("pair", [1, 2, 3], "two", most=2)
     assert checks.items("pair", {1: 2, 3: 4}.keys(), "two", most=2) == [1, 3]
+
+
+def test_names_of_any_length_are_cut_wherever_they_are_said(tmp_path, recwarn):
+    long, path, scen = "long " * 2000, tmp_path / "a.yaml", tmp_path / "a.scen"
+    grid = OccupancyGrid(np.zeros((3, 3)), name=long, resolution=1.0)
+    problem = GridPathProblem(grid, (0, 0), (2, 2))
+    scen.write_text("version 1\n0\ta.map\t5\t5\t0\t0\t1\t1\t1.41421\n")
+    path.write_text("image: a.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.6\nfree_thresh: 0.1\n")
+    for wrong in (
+        lambda: load_map(path, **{long: 1}),
+        lambda: make_algorithm("exact", problem, **{long: 1}),
+        lambda: make_algorithm(make_algorithm("nsga2", problem), problem, **{long: 1}),
+        lambda: read_scen(scen, grid),
+        lambda: ends_of(grid, Query(), None, None),
+        lambda: plot_convergence([], color=Endless()),
+    ):
+        with pytest.raises(GridPathError) as caught:
+            wrong()
+        assert len(str(caught.value)) < 600
+    grid.inflate(0.1)
+    assert [len(str(item.message)) < 600 for item in recwarn] == [True]
+
+
+def test_empty_lists_have_the_type_that_was_asked_for():
+    for kinds, kind in (("b", "b"), ("biu", "i"), ("biuf", "f")):
+        assert checks.array("a", np.empty((0, 2)), (None, 2), kinds, expected="some").dtype.kind == kind
+    assert BitwiseMutation().flip(np.empty((0, 3)), 0.5, np.random.default_rng(1)).shape == (0, 3)
 
 
 def test_flags_are_truth_values():
@@ -431,6 +465,29 @@ def fuzzer():
 def test_every_public_name_has_a_call_in_the_fuzzer(fuzzer):
     arguments, _, public_names = fuzzer
     assert public_names() - set(arguments.known_names()) == set()
+
+
+# What only tells others of something, and is read by nobody who would have to check it.
+DESCRIPTIONS = {"Capability", "ExactResult", "Outcome", "RunRecord"}
+
+
+def flags_of(function, arguments) -> list[str]:
+    """Return the arguments of a call that are True or False by their annotation."""
+    parameters = inspect.signature(function).parameters.values()
+    return [p.name for p in parameters if p.name in arguments and p.annotation in ("bool", "bool | None", bool)]
+
+
+def test_flags_of_all_public_names_are_truth_values(fuzzer, tmp_path, monkeypatch):
+    arguments, _, _ = fuzzer
+    monkeypatch.chdir(tmp_path)
+    seen = 0
+    for name, (function, valid) in arguments.calls(arguments.World(tmp_path)).items():
+        for flag in flags_of(function, valid) if name not in DESCRIPTIONS else ():
+            for wrong in ("no", 2, np.ones(2, dtype=bool)):
+                seen += 1
+                with pytest.raises(GridPathError, match="expected "):
+                    function(**{**valid, flag: wrong})
+    assert seen >= 90
 
 
 def test_wrong_arguments_are_refused_in_a_sentence_and_guises_give_the_same(fuzzer):

@@ -28,6 +28,22 @@ FAULTS = {
 }
 
 
+# A suite that has found a fault has done what is asked of it here.
+FIRST_FAULT_ALONE = """
+import pytest
+
+found = set()
+
+def pytest_runtest_setup(item):
+    if item.cls in found:
+        pytest.skip("a fault was found")
+
+def pytest_runtest_makereport(item, call):
+    if call.excinfo is not None and not call.excinfo.errisinstance(pytest.skip.Exception):
+        found.add(item.cls)
+"""
+
+
 def run_suites(folder: Path) -> tuple[int, dict[str, set[str]]]:
     """Run pytest in a copy of the package, as whoever wrote it would; return its status, and the outcomes of each suite."""
     command = [sys.executable, "-m", "pytest", "-q", "-rA", "-p", "no:cacheprovider", "--tb=no", "test_trails.py"]
@@ -59,6 +75,7 @@ def test_its_suites_find_faults(tmp_path):
         assert text.count(right) == 1, right
         text = text.replace(right, wrong)
     (folder / "trails.py").write_text(text, encoding="utf-8")
+    (folder / "conftest.py").write_text(FIRST_FAULT_ALONE, encoding="utf-8")
     status, outcomes = run_suites(folder)
     assert status == 1
     assert all(any(one.startswith(("FAILED", "ERROR")) for one in found) for found in outcomes.values()), outcomes

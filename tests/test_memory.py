@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 from small_studies import make_plan
 
 from pymoo_gridpath import cli
@@ -67,10 +67,32 @@ def test_whatever_shows_it_is_a_sentence_and_status_2(error, command, monkeypatc
     assert re.fullmatch(r"pymoo-gridpath: memory ran out; expected .* free memory\n", said), said
 
 
+def raised_while(first: Exception, second: Exception) -> Exception:
+    """Return an error that was raised while another was handled, with that as its context and no cause."""
+
+    def fail(error: Exception) -> None:
+        raise error
+
+    try:
+        try:
+            fail(first)
+        except Exception:
+            fail(second)
+    except Exception as error:
+        return error
+    raise AssertionError
+
+
 def test_it_is_found_behind_other_errors_and_not_everywhere():
     wrapped = SystemError("a kernel returned a result with an exception set")
     wrapped.__cause__ = MemoryError()
     assert is_want_of_memory(wrapped)
+    assert is_want_of_memory(
+        raised_while(OSError("libllvmlite.so: failed to map segment from shared object"), OSError("not found"))
+    )
+    assert not is_want_of_memory(raised_while(OSError("libx.so: no such file"), OSError("not found")))
+    assert not is_want_of_memory(UnidentifiedImageError("cannot identify image file 'out of memory.png'"))
+    assert not is_want_of_memory(OSError(errno.ENOENT, "No such file or directory", "out of memory.png"))
     assert not any(map(is_want_of_memory, (ValueError("out of memory"), SystemError("x"), OSError(errno.ENOENT, "x"), None)))
 
 

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import io
 import struct
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
+from PIL.TiffImagePlugin import ImageFileDirectory_v2
+from rosbags import rosbag1, rosbag2
+from rosbags.typesys import Stores, get_typestore
 
 
 @dataclass
@@ -41,6 +46,13 @@ def text(rng) -> Written:
     if rng.random() < 0.7:
         header, says = b"name: yard\nresolution: 0.25\norigin: 1, -2 0.5\n\n", {"resolution": 0.25, "origin": (1.0, -2.0, 0.5)}
     return Written("text", {"m.txt": header + _letters(rng, occupied, ".0", "#@X1")}, occupied, says)
+
+
+def matrix(rng) -> Written:
+    occupied = _cells(rng, 2)
+    stream = io.BytesIO()
+    np.savetxt(stream, occupied[::-1], fmt=str(rng.choice(["%d", "%.1f", "%e"])), delimiter=str(rng.choice([" ", ",", ";"])))
+    return Written("matrix", {"m.txt": stream.getvalue()}, occupied)
 
 
 def movingai(rng) -> Written:
@@ -137,13 +149,63 @@ def message(rng) -> Written:
     return Written("message", {"m.yaml": (content + data).encode()}, occupied, {"resolution": 0.05, "origin": (-1.5, 2.0, 0.0)})
 
 
+def bag(rng) -> Written:
+    """The same in a bag of ROS 1 or 2, beside an older one, written by another library."""
+    occupied = _cells(rng)
+    first = rng.random() < 0.5
+    store = Stores.ROS1_NOETIC if first else Stores.ROS2_HUMBLE
+    typestore, kind = get_typestore(store), "nav_msgs/msg/OccupancyGrid"
+    types = typestore.types
+    time = types["builtin_interfaces/msg/Time"](sec=3, nanosec=5)
+    header = types["std_msgs/msg/Header"](stamp=time, frame_id="map", **({"seq": 7} if first else {}))
+    turned = types["geometry_msgs/msg/Quaternion"](x=0.0, y=0.0, z=0.0, w=1.0)
+    pose = types["geometry_msgs/msg/Pose"](types["geometry_msgs/msg/Point"](-1.5, 2.0, 0.0), turned)
+    info = types["nav_msgs/msg/MapMetaData"](time, 0.05, occupied.shape[1], occupied.shape[0], pose)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / ("m.bag" if first else "m")
+        writer = rosbag1.Writer(path) if first else rosbag2.Writer(path, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
+        with writer:
+            connection = writer.add_connection("/map", kind, typestore=typestore)
+            for k, cells in enumerate((~occupied, occupied)):
+                message = types[kind](header, info, np.where(cells, 100, 0).astype(np.int8).ravel())
+                raw = typestore.serialize_ros1(message, kind) if first else typestore.serialize_cdr(message, kind)
+                writer.write(connection, k, raw)
+        content = (path if first else path / "m.mcap").read_bytes()
+    name = "bag" if first else "mcap"
+    return Written(name, {f"m.{name}": content}, occupied, {"resolution": 0.05, "origin": (-1.5, 2.0, 0.0)})
+
+
+def geotiff(rng) -> Written:
+    """A raster of percents whose tags say where it lies, in metres of a zone of UTM."""
+    occupied = _cells(rng)
+    tags = ImageFileDirectory_v2()
+    values = {
+        33550: (12, (0.5, 0.5, 0.0)),
+        33922: (12, (0.0, 0.0, 0.0, 1000.0, 2000.0, 0.0)),
+        34735: (3, (1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32632)),
+    }
+    for tag, (kind, value) in values.items():
+        tags.tagtype[tag] = kind
+        tags[tag] = value
+    stream = io.BytesIO()
+    compression = (None, "tiff_deflate", "tiff_lzw")[rng.integers(3)]
+    Image.fromarray(np.where(occupied[::-1], 100, 0).astype(np.uint8)).save(
+        stream, "TIFF", tiffinfo=tags, compression=compression
+    )
+    says = {"resolution": 0.5, "origin": (1000.0, 2000.0 - 0.5 * len(occupied), 0.0)}
+    return Written("geotiff", {"m.tif": stream.getvalue()}, occupied, says)
+
+
 FORMATS: dict[str, Callable[[np.random.Generator], Written]] = {
     "text": text,
+    "matrix": matrix,
     "MovingAI": movingai,
     "scen": scen,
     "npy": npy,
     "yaml": yaml,
     "message": message,
+    "bag": bag,
+    "geotiff": geotiff,
     "png": _image("PNG", "png", ("1", "L", "LA", "RGB", "RGBA", "P", "I;16")),
     "gif": _image("GIF", "gif", ("L", "P", "1")),
     "bmp": _image("BMP", "bmp", ("1", "L", "RGB")),

@@ -252,12 +252,14 @@ ANYTHING: list[Mutation] = [
 TEXTS: list[Mutation] = [empty_lines, long_line, number, repeat_line, swap_tokens]
 OF_FORMAT: dict[str, list[Mutation]] = {
     "text": TEXTS,
+    "matrix": TEXTS,
     "MovingAI": TEXTS,
     "scen": TEXTS,
     "npy": [npy_header],
     "YAML": [*TEXTS, nested, anchors],
     "EXIF": [png_chunks, tiff_tag],
     "GDAL": [tiff_tag],
+    "geotiff": [tiff_tag],
     "png": [png_chunks, image_size],
     "tif": [tiff_tag],
     "gif": [image_size],
@@ -302,7 +304,7 @@ def _harmless(written, name, content, others, rng, whole):
             "a comment": b"# a map\n" + content,
             "mark": b"\xef\xbb\xbf" + content,
         }
-    elif written.format in ("text", "MovingAI", "scen"):
+    elif written.format in ("text", "matrix", "MovingAI", "scen"):
         ways = {
             "line ends": content.replace(b"\n", b"\r\n"),
             "old line ends": content.replace(b"\n", b"\r"),
@@ -310,6 +312,9 @@ def _harmless(written, name, content, others, rng, whole):
             "empty lines at the end": content + b"\n \n\n",
             "mark": b"\xef\xbb\xbf" + content,
         }
+    elif written.format in ("bag", "mcap"):
+        # What stands behind is read as another record.
+        ways = {"nothing": content}
     elif name.endswith(".png"):
         ways = {"a text chunk": content[:33] + b"\0\0\0\3tEXta\0b" + struct.pack(">I", zlib.crc32(b"tEXta\0b")) + content[33:]}
     else:
@@ -336,6 +341,12 @@ def _telling(written, name, content, others, rng):
             ),
             "an unknown letter": (content[:-2] + b"?\n", "refused"),
             "another last cell": (content[:-2] + (b"." if written.occupied[0, -1] else b"@") + b"\n", "other"),
+        }
+    elif written.format == "matrix":
+        ways = {
+            "a number more": (content[:-1] + b" 0\n", "refused"),
+            "another number": (b"7" + content[1:], "refused"),
+            "a row less": (content[content.index(b"\n") + 1 :], "other"),
         }
     elif written.format == "npy":
         ways = {"cut short": (content[:-1], "refused")}

@@ -224,9 +224,13 @@ def repeat_line(text: str, random: Random) -> str:
     return "".join(lines)
 
 
+TABLE = "[[x]]\n"
+
+
 def blow_up(text: str, random: Random) -> str:
-    line = random.choice(["[", "{a=", "a.", "x = [[[[", "# " + "c" * 1000 + "\n", "\n", '"'])
-    return text + random.choice(["", "z = "]) + line * random.choice([100, 5000, 200_000])
+    # Five million tables are more than a gigabyte on any machine, unless the size of the file is looked at first.
+    line = random.choice(["[", "{a=", "a.", "x = [[[[", "# " + "c" * 1000 + "\n", "\n", '"', TABLE])
+    return text + random.choice(["", "z = "]) + line * (5_000_000 if line is TABLE else random.choice([100, 5000, 200_000]))
 
 
 OF_DATA = [change_type, change_number, change_word, nest, flatten, drop, add_key, repeat, swap]

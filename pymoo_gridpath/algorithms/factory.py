@@ -122,7 +122,8 @@ def _copied(algorithm: Any, given: Mapping[str, Any]) -> Algorithm:
     """Return a copy of an algorithm that somebody has made, before it runs."""
     name = type(algorithm).__name__
     if given:
-        raise CapabilityError(f"{name} is made already and takes no argument {next(iter(given))!r}; give its class to set it")
+        key = checks.shown(next(iter(given)))
+        raise CapabilityError(f"{name} is made already and takes no argument {key}; give its class to set it")
     if algorithm.problem is not None:
         raise CapabilityError(f"{name} has begun a run, expected an algorithm that has not, or its class")
     return copy.deepcopy(algorithm)

@@ -70,9 +70,9 @@ class SmoothMOEAD(MOEAD):
     Raises
     ------
     CapabilityError
-        If ref_dirs has fewer than two rows, n_replace or batch_size is not positive, band is out of its range or given without
-        the tie-break that it is for, or, when the run begins, ref_dirs has another number of columns than the problem
-        objectives.
+        If ref_dirs has fewer than two rows, smoothness or normalize is no truth value, n_replace or batch_size is not positive,
+        band is out of its range or given without the tie-break that it is for, or, when the run begins, ref_dirs has another
+        number of columns than the problem objectives.
 
     Notes
     -----
@@ -123,6 +123,8 @@ class SmoothMOEAD(MOEAD):
         for name, value in given.items():
             if value is not None:
                 check_whole("MOEAD", name, value)
+        smoothness = checks.flag("smoothness", smoothness, CapabilityError)
+        normalize = checks.flag("normalize", normalize, CapabilityError)
         if band is not None and not smoothness:
             raise CapabilityError(
                 f"band is {checks.shown(band)} and smoothness is False, expected no band: ties are not broken"

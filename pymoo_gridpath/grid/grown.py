@@ -151,7 +151,7 @@ class GrownCells(PlacedCells):
         occupied = self._grown(cells)
         if occupied is self._occupied:
             warnings.warn(
-                f"the robot radius of {radius:g} m is at most half a cell of {self.name!r}, {self.resolution:g} m "
+                f"the robot radius of {radius:g} m is at most half a cell of {checks.shown(self.name)}, {self.resolution:g} m "
                 "wide, so that no obstacle grows",
                 GridPathWarning,
                 stacklevel=2,

@@ -180,6 +180,8 @@ def _check_metres(path, crs) -> None:
         return
     if crs.is_geographic:
         raise MapError(path, "the pixels are in degrees of longitude and latitude, expected a projection in metres")
+    if not crs.is_projected:
+        raise MapError(path, "the coordinates are those of no projection, expected a projection in metres")
     unit, factor = crs.linear_units_factor
     if factor != 1.0:
         raise MapError(path, f"the pixels are in {shorten(unit)} of {factor:g} m, expected a projection in metres")

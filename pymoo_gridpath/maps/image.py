@@ -256,6 +256,9 @@ def _check_cost(path, file: CountedReader, image: ImageFile.ImageFile) -> None:
         size += 2 * len(image.getbands()) if image.info.get("progressive") else 0
     elif image.format == "WEBP":
         size = 22
+    elif image.format == "PNG" and size == 8 and str(image.tile[0][3]).endswith(";16B"):
+        # Colours of 16 bits are made into others of 8, which takes its time.
+        size += 8
     if size * cells > MAX_DECODED:
         raise MapError(
             path,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 
+from pymoo_gridpath.checks import shown
 from pymoo_gridpath.errors import MapError
 from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.grid.arguments import as_moves
@@ -60,7 +61,8 @@ def load_map(path: str | os.PathLike[str], moves: int | None = None, **options) 
         if key not in kind.options:
             raise MapError(
                 path,
-                f"the map format {kind.name!r} does not take the option {key!r}, expected one of {', '.join(kind.options)}",
+                f"the map format {kind.name!r} does not take the option {shown(key)}, "
+                f"expected one of {', '.join(kind.options)}",
             )
     moves = None if moves is None else as_moves(moves)
     grid = kind.read(file, **given)

@@ -201,7 +201,7 @@ def read_scen(path: str | os.PathLike[str], grid: OccupancyGrid | None = None) -
             raise MapError(
                 path,
                 f"the entry is for a map of {query.width} x {query.height} cells, "
-                f"expected {grid.width} x {grid.height} as the grid {grid.name!r}",
+                f"expected {grid.width} x {grid.height} as the grid {checks.shown(grid.name)}",
                 line,
             )
         queries.append(query)

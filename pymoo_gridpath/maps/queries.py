@@ -69,7 +69,7 @@ def ends_of(
     missing = " and ".join(f"{option}{role}" for role, cell in ends.items() if not cell)
     if missing:
         raise GridError(
-            f"the map {grid.name!r} needs {missing}, expected a cell x,y with x from 0 to {grid.width - 1} "
+            f"the map {shown(grid.name)} needs {missing}, expected a cell x,y with x from 0 to {grid.width - 1} "
             f"and y from 0 (bottom) to {grid.height - 1}"
         )
     return ends["start"], ends["goal"]  # pyright: ignore[reportReturnType]

@@ -71,9 +71,11 @@ def grid_of_message(
         width, height, resolution = info.width, info.height, info.resolution
         place = [checks.number("info.origin", value, error=GridError) for value in (position.x, position.y)]
         quaternion = [checks.number("info.origin", getattr(turned, key), error=GridError) for key in "xyzw"]
-    except AttributeError:
+    except AttributeError as error:
         expected = "a nav_msgs/OccupancyGrid with info and data"
-        raise GridError(f"message is {checks.shown(message)}, expected {expected}") from None
+        if not hasattr(message, "info"):
+            raise GridError(f"message is {checks.shown(message)}, expected {expected}") from None
+        raise GridError(f"the message has no {checks.shown(error.name)}, expected {expected}") from None
     width = checks.whole("info.width", width, 1, error=GridError)
     height = checks.whole("info.height", height, 1, error=GridError)
     data = checks.array("data", data, (None,), "iu", expected="whole numbers from -1 to 100, one a cell", error=GridError)

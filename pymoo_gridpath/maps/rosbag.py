@@ -58,8 +58,13 @@ def read_rosbag(
     library = _library(path)
     try:
         message = _last_map(path, file, topic, *library)
-    except (MapError, MemoryError):
+    except MapError:
         raise
+    except MemoryError:
+        # The library makes room for whatever size a damaged bag declares.
+        if not _is_room_for(2 * file.stat().st_size):
+            raise
+        raise MapError(path, "the bag declares more than it holds, expected a whole bag of ROS 1 or 2") from None
     except Exception as error:
         # What is damaged fails in almost any way.
         why = checks.printable(error, 120)
@@ -79,6 +84,13 @@ class RosbagFormat(MapFormat):
 
     def matches(self, head, path):
         return head.startswith(_MAGIC) or head.startswith(b"rosbag2_bagfile_information:")
+
+
+def _is_room_for(n_bytes: int) -> bool:
+    try:
+        return len(bytearray(n_bytes)) == n_bytes
+    except MemoryError:
+        return False
 
 
 def _library(path) -> tuple[Any, Any]:
@@ -102,13 +114,13 @@ def _last_map(path, file: Path, topic: str | None, reader: Any, typestore: Any) 
         if topic is None:
             topic = _USUAL if _USUAL in topics else topics[0] if len(topics) == 1 else None
         if topic not in topics:
-            asked = "there is no topic to prefer" if topic is None else f"there is no map on the topic {topic!r}"
-            raise MapError(path, f"{asked}, expected topic=, one of {', '.join(topics)}")
+            asked = "there is no topic to prefer" if topic is None else f"there is no map on the topic {checks.shown(topic)}"
+            raise MapError(path, f"{asked}, expected topic=, one of {checks.printable(', '.join(topics), 200)}")
         last = None
         for connection, _, data in bag.messages([one for one in with_maps if one.topic == topic]):
             last = connection, data
         if last is None:
-            raise MapError(path, f"no message was recorded on the topic {topic!r}, expected one with a map")
+            raise MapError(path, f"no message was recorded on the topic {checks.shown(topic)}, expected one with a map")
         message: Any = bag.deserialize(last[1], last[0].msgtype)
         check_size(path, int(message.info.width), int(message.info.height))
         return message

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from pymoo_gridpath import checks
 from pymoo_gridpath.errors import CapabilityError, counted, nearest
 
 
@@ -48,7 +49,7 @@ def refuse_unknown(owner: str, given: Iterable[str], accepted: Iterable[str]) ->
     for key in given:
         if key not in accepted:
             hint = nearest(key, accepted, "it takes") if accepted else "it takes none"
-            raise CapabilityError(f"{owner} takes no argument {key!r}; {hint}")
+            raise CapabilityError(f"{owner} takes no argument {checks.shown(key)}; {hint}")
 
 
 def refuse_missing(owner: str, given: Iterable[str], accepted: Mapping[str, Any]) -> None:

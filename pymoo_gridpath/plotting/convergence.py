@@ -57,7 +57,7 @@ def plot_convergence(
         If nothing was recorded or the quantity is unknown.
     """
     checks.one_of("quantity", quantity, _LABELS)
-    if not is_color_like(color):
+    if not _is_colour(color):
         raise GridPathError(f"color is {checks.shown(color)}, expected a colour of matplotlib such as '#0072B2'")
     if label is not None:
         label = visible(checks.text("label", label))
@@ -86,6 +86,13 @@ def plot_convergence(
         axis = _LABELS[quantity]
         _dress(ax, axis if _metres(recorders) is None else axis.replace("[cells]", "[m]"))
     return ax
+
+
+def _is_colour(value: object) -> bool:
+    try:
+        return is_color_like(value)
+    except Exception:  # what an object raises that is asked for its items
+        return False
 
 
 def as_recorders(history) -> list[ConvergenceRecorder]:

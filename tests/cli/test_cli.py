@@ -4,13 +4,11 @@ import csv
 import io
 import json
 import os
-import signal
 import subprocess
 import sys
-import time
 
 import pytest
-from command_lines import FAST, run, run_process
+from command_lines import FAST, UNDRAWN, run, run_process
 
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.maps import load_map, shipped_maps
@@ -307,31 +305,39 @@ def test_no_legal_path_is_said_and_exits_with_1(tmp_path):
     assert (tmp_path / "out" / "paths.json").exists()
 
 
+# Presses Ctrl-C after the third generation, so often as the first argument says.
+INTERRUPTED = """
+import os, signal, sys
+from pymoo.core.algorithm import Algorithm
+
+times = int(sys.argv.pop(1))
+
+def go_on_and_interrupt(self, go_on=Algorithm.next):
+    go_on(self)
+    for _ in range(times if self.n_iter == 4 else 0):
+        os.kill(os.getpid(), signal.SIGINT)
+
+# Processes that are started in the background may have been told to ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+Algorithm.next = go_on_and_interrupt
+"""
+
+
+def interrupted(times, out):
+    arguments = ["plan", "paper16", "--generations", "100000", "--pop-size", "40", "-o", str(out)]
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED + UNDRAWN, str(times), *arguments], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 130
+    assert "stopping, and keeping what was found" in done.stderr and "Traceback" not in done.stderr
+    return done
+
+
 def test_ctrl_c_keeps_the_front_found_so_far(tmp_path):
-    out = tmp_path / "out"
-    command = [
-        sys.executable,
-        "-m",
-        "pymoo_gridpath.cli",
-        "plan",
-        "paper16",
-        "--generations",
-        "100000",
-        "--pop-size",
-        "40",
-        "-o",
-        str(out),
-    ]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert process.stdout is not None
-    assert "paper16" in process.stdout.readline()
-    time.sleep(3)
-    process.send_signal(signal.SIGINT)
-    stdout, stderr = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert "interrupted" in stderr and "Traceback" not in stderr
-    document = json.loads((out / "paths.json").read_text())
-    assert document["paths"] and "shortest" in stdout
+    done = interrupted(1, tmp_path)
+    assert "interrupted" in done.stderr
+    document = json.loads((tmp_path / "paths.json").read_text())
+    assert document["paths"] and "shortest" in done.stdout
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
@@ -360,17 +366,8 @@ def test_letters_that_the_terminal_lacks_are_no_error(tmp_path):
 
 
 def test_second_ctrl_c_ends_at_once(tmp_path):
-    command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", "office", "--generations", "100000", "--pop-size", "2000"]
-    process = subprocess.Popen([*command, "-o", str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert process.stdout is not None
-    process.stdout.readline()
-    time.sleep(1)
-    process.send_signal(signal.SIGINT)
-    time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
-    _, stderr = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert "stopping, and keeping what was found" in stderr and "Traceback" not in stderr
+    done = interrupted(2, tmp_path)
+    assert "shortest" not in done.stdout and not (tmp_path / "paths.json").exists()
 
 
 def test_ctrl_c_in_compiled_code_ends_at_once(monkeypatch, capsys):
@@ -438,7 +435,7 @@ def test_progress_shows_on_a_terminal_and_clears_its_line():
 def test_progress_appears_on_a_real_terminal(tmp_path, free_map):
     pty = pytest.importorskip("pty", reason="there are no pseudo-terminals on Windows")
     master, slave = pty.openpty()
-    command = [sys.executable, "-m", "pymoo_gridpath.cli", "plan", str(free_map), "--start", "0,0", "--goal", "5,3"]
+    command = [sys.executable, "-c", UNDRAWN, "plan", str(free_map), "--start", "0,0", "--goal", "5,3"]
     command += ["--pop-size", "50", "--generations", "60", "-o", str(tmp_path / "out")]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=slave)
     assert process.wait(timeout=120) == 0

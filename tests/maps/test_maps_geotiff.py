@@ -18,7 +18,7 @@ from pymoo_gridpath.maps import format_of, read_geotiff, read_image, read_raster
 PERCENT = np.array([[0, 100, -1, 25], [65, 26, 64, 0], [0, 0, 0, 100]], dtype=np.int8)
 OCCUPIED = np.array([[0, 1, 1, 0], [1, 1, 1, 0], [0, 0, 0, 1]], dtype=bool)
 UNKNOWN = np.array([[0, 0, 1, 0], [0, 1, 1, 0], [0, 0, 0, 0]], dtype=bool)
-UTM, DEGREES, FEET = 32632, 4326, 2277
+UTM, DEGREES, FEET, GEOCENTRIC = 32632, 4326, 2277, 4978
 
 
 def keys(code):
@@ -127,6 +127,7 @@ def test_rows_that_run_up_are_not_turned_over(file):
     ("values", "options", "message"),
     [
         (PERCENT, {"code": DEGREES}, "the pixels are in degrees of longitude and latitude, expected a projection in metres"),
+        (PERCENT, {"code": GEOCENTRIC}, "the coordinates are those of no projection, expected a projection in metres"),
         (PERCENT, {"code": FEET}, r"the pixels are in .* of 0.3048.* m, expected a projection in metres"),
         (PERCENT, {"sides": (0.5, 0.6)}, "the pixels are 0.5 by 0.6, or slanted, expected squares"),
         (PERCENT.astype(np.int16) * 3, {}, r"occupancy of cell \(3, 0\) is 300, expected -1 \(unknown\) or 0 to 100 percent"),
@@ -134,7 +135,7 @@ def test_rows_that_run_up_are_not_turned_over(file):
         (np.zeros((3, 4), dtype=np.complex64), {}, "of the type complex64, expected whole or real numbers"),
         (np.zeros((3, 4, 3), dtype=np.uint8), {"photometric": "rgb"}, "the file has 3 bands, expected one number a cell"),
     ],
-    ids=["degrees", "feet", "oblong", "heights", "halves", "complex", "colours"],
+    ids=["degrees", "geocentric", "feet", "oblong", "heights", "halves", "complex", "colours"],
 )
 def test_what_is_no_map_is_refused(file, values, options, message):
     with pytest.raises(MapError, match=message) as error:

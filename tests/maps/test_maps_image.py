@@ -290,6 +290,10 @@ def test_images_that_take_too_long_are_refused(tmp_path, write, refused, png, mo
     monkeypatch.setattr(image_reader, "MAX_DECODED", 7999)
     refused(read_image, write("e.ppm", b"P6 50 20 255\n" + bytes(3000)), None, "8000 bytes", "7999")
     assert read_image(write("f.pgm", b"P5 50 20 255\n" + bytes(1000))).n_occupied == 1000
+    rows = [bytes([9]) * 20 * 8] * 50
+    refused(read_image, write("g.png", png(20, 50, 16, 6, rows)), None, "16000 bytes")
+    monkeypatch.setattr(image_reader, "MAX_DECODED", 8000)
+    assert read_image(write("h.png", png(20, 50, 8, 6, [row[:80] for row in rows]))).shape == (50, 20)
 
 
 def test_tags_and_exif_of_too_many_values_are_refused(write, refused, png, monkeypatch):

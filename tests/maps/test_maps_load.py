@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +10,9 @@ from hypothesis import strategies as st
 
 from pymoo_gridpath.errors import GridError, GridPathError, MapError
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.maps import load_map
+from pymoo_gridpath.maps import MAP_FORMATS, format_of, load_map
+
+FUZZ = Path(__file__).resolve().parents[2] / "benchmarks" / "fuzz"
 
 CELLS = [[0, 0, 1], [0, 0, 0]]
 
@@ -174,3 +177,23 @@ def test_damaged_maps(tmp_path, png, data):
         content[at : at + data.draw(st.integers(0, 3))] = data.draw(st.binary(max_size=3))
         content = content or bytearray(b"\n")
     loads_or_refuses(tmp_path / f"fuzz.{kind}", bytes(content))
+
+
+def test_the_fuzzer_writes_maps_of_every_format(tmp_path, monkeypatch):
+    if not FUZZ.is_dir():
+        pytest.skip("the benchmarks are not beside the tests")
+    monkeypatch.syspath_prepend(FUZZ)
+    import map_files
+
+    seen = set()
+    for name, write in map_files.FORMATS.items():
+        for written in map(write, (np.random.default_rng(seed) for seed in range(3))):
+            (tmp_path / name).mkdir(exist_ok=True)
+            for file, content in written.files.items():
+                (tmp_path / name / file).write_bytes(content)
+            if written.format != "scen":
+                path = tmp_path / name / next(iter(written.files))
+                seen.add(type(format_of(path)))
+                np.testing.assert_array_equal(load_map(path).occupied, written.occupied)
+    ours = {kind for kind in MAP_FORMATS.values() if kind.__module__.startswith("pymoo_gridpath.")}
+    assert ours <= seen

@@ -18,7 +18,7 @@ from rosbags.typesys import Stores, get_typestore
 from pymoo_gridpath import load_map
 from pymoo_gridpath.cli import main
 from pymoo_gridpath.errors import GridError, MapError
-from pymoo_gridpath.maps import format_of, grid_of_message, read_ros_message, read_rosbag
+from pymoo_gridpath.maps import format_of, grid_of_message, read_ros_message, read_rosbag, rosbag
 
 TYPE = "nav_msgs/msg/OccupancyGrid"
 DATA = [0, 100, -1, 25, 26, 64, 65, 0, 0, 0, 0, 80]
@@ -105,7 +105,7 @@ def test_text(tmp_path, end):
         (("height: 3", "height: 0"), "the map is 4 x 0 cells"),
         (("height: 3", "height: 3000000000"), "the map is 4 x 3000000000 cells, expected at most"),
         (("  width: 4\n", ""), "info.width is None"),
-        (("position:", "place:"), "expected a nav_msgs/OccupancyGrid"),
+        (("position:", "place:"), "the message has no 'position', expected a nav_msgs/OccupancyGrid"),
         (("x: 0.0", "x: 0.1"), "info.origin is turned by the quaternion"),
         (("x: 0.0", "x: here"), "info.origin is 'here'"),
         (("info:", "info: ["), "the YAML cannot be read"),
@@ -196,6 +196,8 @@ def test_bags(tmp_path, suffix):
         for topic in ("/talk", "/nothing"):
             with pytest.raises(MapError, match=f"no map on the topic '{topic}', expected topic=, one of /costs, /map"):
                 read_rosbag(one, topic=topic)
+        with pytest.raises(MapError, match=r"no map on the topic '\w+\.\.\.\w+', expected topic="):
+            read_rosbag(one, topic="long" * 1000)
 
 
 def test_which_topic_of_several(tmp_path):
@@ -215,6 +217,19 @@ def test_the_command_line_takes_a_topic(tmp_path, capsys):
     assert main(["info", str(file)]) == 2 and "expected topic=" in capsys.readouterr().err
     assert main(["info", str(file), "--topic", "/a"]) == 0
     assert "unknown       3 cells" in capsys.readouterr().out
+
+
+def test_a_damaged_bag_is_not_called_large(tmp_path, monkeypatch):
+    file = bag_of(tmp_path / "one.mcap", [("/map", message_of())])
+    content = bytearray(file.read_bytes())
+    # The length of the first record.
+    content[9:17] = bytes(7) + b"\x10"
+    file.write_bytes(content)
+    with pytest.raises(MapError, match="the bag declares more than it holds, expected a whole bag"):
+        load_map(file)
+    monkeypatch.setattr(rosbag, "_is_room_for", lambda n_bytes: n_bytes < 2 * len(content))
+    with pytest.raises(MemoryError):
+        load_map(file)
 
 
 def test_without_the_library(tmp_path, monkeypatch):

@@ -11,7 +11,7 @@ from PIL import Image
 
 from pymoo_gridpath import OccupancyGrid, load_map
 from pymoo_gridpath.errors import MapError
-from pymoo_gridpath.maps import save_map
+from pymoo_gridpath.maps import _matrix, save_map
 
 numbers = st.floats(-1e6, 1e6).filter(lambda value: value == 0 or abs(value) > 1e-9)
 
@@ -92,6 +92,33 @@ def test_matrices_of_savetxt_are_read(tmp_path, arguments):
     (tmp_path / "header.txt").write_text(f"resolution: 0.05\n\n{text}")
     grid = load_map(tmp_path / "header.txt")
     assert np.array_equal(grid.occupied, occupied) and grid.resolution == 0.05
+
+
+@pytest.mark.parametrize("block", [1, 7, 1000])
+@pytest.mark.parametrize("write", ["{:d}", "{:.1f}", "{:e}", "0{:d}"])
+def test_matrices_are_read_alike_in_blocks_of_any_size(tmp_path, monkeypatch, block, write):
+    occupied = np.random.default_rng(2).random((9, 4)) < 0.5
+    rows = [" ".join(map(write.format, row)) for row in occupied[::-1].astype(int)]
+    path = tmp_path / "map.txt"
+    monkeypatch.setattr(_matrix, "_BLOCK", block)
+    path.write_text("\n".join(rows))
+    assert np.array_equal(load_map(path).occupied, occupied)
+    for wrong, said in (("0 1 0", "3 numbers"), ("0 1 0 1 0", "5 numbers"), ("", "0 numbers"), ("0 1 0 2", "'2' in column 4")):
+        path.write_text("\n".join([*rows[:6], wrong, *rows[7:]]))
+        with pytest.raises(MapError, match=f"line 7: .*{said}"):
+            load_map(path)
+
+
+def test_a_row_of_too_many_bytes_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(_matrix, "_LONGEST_ROW", 9)
+    monkeypatch.setattr(_matrix, "_BLOCK", 2)
+    path = tmp_path / "map.txt"
+    path.write_text("0 1 0 1 0\n0 0 0 0 0")
+    assert load_map(path).shape == (2, 5)
+    for text, line in (("0 1 0 1 00\n0 0 0 0 0", 1), ("0 1 0 1 0\n0 0 0 0 0\n0 0 0 0 0 0 0 0 0", 3)):
+        path.write_text(text)
+        with pytest.raises(MapError, match=f"line {line}: the row has 1[07] bytes, expected at most 9"):
+            load_map(path)
 
 
 @pytest.mark.parametrize(

@@ -159,7 +159,7 @@ def test_a_study_with_planners_runs_in_processes_that_have_registered_nothing(sc
     algorithms = [{"algorithm": "scout", "parameters": {"reach": 1}}, {"algorithm": "herd", "pop_size": 10}]
     plan = planned(algorithms, reference=True)
     assert estimate(plan).n_measured > 0
-    with LocalProcesses(2) as executor:
+    with LocalProcesses(1) as executor:
         outcome = run_study(plan, tmp_path / "out", executor)
     assert (outcome.n_run, outcome.n_failed) == (5, 0)
     store = Store(tmp_path / "out")

@@ -139,7 +139,7 @@ def test_things_of_a_file_are_what_runs_are_made_of(hikers, tmp_path):
 
 
 def test_processes_and_the_report_of_a_process_that_has_none_of_it(hikers, tmp_path):
-    with LocalProcesses(2) as executor:
+    with LocalProcesses(1) as executor:
         outcome = run_study(load_study(tmp_path / "study.toml"), tmp_path / "out", executor)
     assert (outcome.n_run, outcome.n_failed) == (5, 0)
     plan = Store(tmp_path / "out").read_plan()

@@ -129,8 +129,10 @@ class Store:
         Raises
         ------
         GridPathError
-            If the keys are no texts, a folder or a file cannot be read, or what is damaged cannot be moved.
+            If the keys are no texts, set_aside is no truth value, a folder or a file cannot be read, or what is damaged cannot
+            be moved.
         """
+        set_aside = checks.flag("set_aside", set_aside)
         # An iterator has no length, which is what tells lists from what only looks like one.
         if isinstance(keys, Iterator):
             keys = list(itertools.islice(keys, MAX_RUNS + 1))

@@ -78,9 +78,9 @@ def test_mann_whitney_of_large_samples_is_near_the_exact_one():
 def test_mann_whitney_is_the_same_and_soon_done_whichever_sample_is_larger(n, m):
     rng = np.random.default_rng(m)
     x, y = rng.integers(0, 40, n) + 9.0, rng.integers(0, 40, m).astype(float)
-    start = time.perf_counter()
+    start = time.process_time()
     one, other = significance.mann_whitney(x, y), significance.mann_whitney(y, x)
-    assert time.perf_counter() - start < 5.0
+    assert time.process_time() - start < 5.0
     assert (one.p, one.statistic) == (pytest.approx(other.p, rel=1e-12), n * m - other.statistic)
 
 

@@ -212,14 +212,13 @@ def test_workers_that_are_killed_again_and_again_are_no_matter_of_a_guard(tmp_pa
     assert "__main__" not in str(raised.value)
 
 
-def test_a_worker_that_is_killed_while_it_answers_loses_its_own_task_alone():
+def test_a_worker_that_is_killed_while_it_answers_loses_its_own_task_alone(pair):
     """Pools that have one queue of results for all wait for ever here."""
-    with LocalProcesses(2) as executor:
-        first, second = executor.submit(die_while_answering), executor.submit(str, 7)
-        with pytest.raises(WorkerLost, match="ended by signal 9"):
-            first.result(timeout=60)
-        assert second.result(timeout=60) == "7"
-        assert {executor.submit(str, number).result(timeout=60) for number in range(4)} == set("0123")
+    first, second = pair.submit(die_while_answering), pair.submit(str, 7)
+    with pytest.raises(WorkerLost, match="ended by signal 9"):
+        first.result(timeout=60)
+    assert second.result(timeout=60) == "7"
+    assert {pair.submit(str, number).result(timeout=60) for number in range(4)} == set("0123")
 
 
 def die_while_answering():
@@ -231,18 +230,17 @@ def die_while_answering():
     return bytes(10**6)
 
 
-def test_what_a_task_raises_arrives_with_where_it_was_raised():
-    with LocalProcesses(1) as executor:
-        with pytest.raises(ValueError, match="invalid literal") as raised:
-            executor.submit(int, "x").result(timeout=60)
-        assert "in a local process" in raised.value.__notes__[0]
-        with pytest.raises(RuntimeError, match="Unpicklable: only here"):
-            executor.submit(raise_unpicklable).result(timeout=60)
-        with pytest.raises(Exception, match="pickle"):
-            executor.submit(lambda: 1).result(timeout=60)
-        with pytest.raises(Exception, match="pickle"):
-            executor.submit(return_unpicklable).result(timeout=60)
-        assert executor.submit(int, "3").result(timeout=60) == 3
+def test_what_a_task_raises_arrives_with_where_it_was_raised(pair):
+    with pytest.raises(ValueError, match="invalid literal") as raised:
+        pair.submit(int, "x").result(timeout=60)
+    assert "in a local process" in raised.value.__notes__[0]
+    with pytest.raises(RuntimeError, match="Unpicklable: only here"):
+        pair.submit(raise_unpicklable).result(timeout=60)
+    with pytest.raises(Exception, match="pickle"):
+        pair.submit(lambda: 1).result(timeout=60)
+    with pytest.raises(Exception, match="pickle"):
+        pair.submit(return_unpicklable).result(timeout=60)
+    assert pair.submit(int, "3").result(timeout=60) == 3
 
 
 class Unpicklable(Exception):
@@ -258,10 +256,7 @@ def return_unpicklable():
     return lambda: 1
 
 
-def test_what_is_under_way_is_finished_or_given_up():
-    with LocalProcesses(1) as executor:
-        futures = [executor.submit(time.sleep, 0.1) for _ in range(3)]
-    assert all(future.done() and not future.cancelled() for future in futures)
+def test_what_is_under_way_is_given_up_or_finished():
     executor = LocalProcesses(1)
     futures = [executor.submit(time.sleep, 60) for _ in range(3)]
     wait_until(futures[0].running)
@@ -273,6 +268,8 @@ def test_what_is_under_way_is_finished_or_given_up():
     assert time.monotonic() - begin < 30
     with executor:
         assert executor.submit(int, "3").result(timeout=60) == 3, "it can be used again"
+        futures = [executor.submit(time.sleep, 0.1) for _ in range(3)]
+    assert all(future.done() and not future.cancelled() for future in futures)
 
 
 # -- Dask ---------------------------------------------------------------------------------------------------------------
