@@ -38,7 +38,8 @@ myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 3
 nb_execution_mode = "auto"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 300
+# Of a cell in seconds: of an endless one, not of one that compiles kernels on a busy machine.
+nb_execution_timeout = 1200
 # Cells may write files.
 nb_execution_in_temp = True
 nb_merge_streams = True
