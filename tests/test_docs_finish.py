@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import importlib.util
 import io
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -98,3 +99,9 @@ def test_thumbnails_have_no_margins(tmp_path, monkeypatch):
     assert not finish.draw_thumbnails(tmp_path, site(tmp_path, walk='<img src="_images/figure.png">'))
     with Image.open(tmp_path / "_images" / "thumbnail-walk.png") as image:
         assert image.getpixel((2, 2)) == (255, 0, 0) and image.size == finish.THUMBNAIL
+
+
+def test_pages_run_on_compiled_kernels():
+    extras = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    (package,) = [requirement for requirement in extras["docs"] if requirement.startswith("pymoo_gridpath[")]
+    assert "fast" in package.partition("[")[2].rstrip("]").split(","), "plain Python takes many times the ten minutes"
