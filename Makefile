@@ -30,7 +30,7 @@ lint: .setup-test
 	$(BIN)/pyright
 
 docs: .setup-docs
-	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
+	$(BIN)/python -m sphinx -W --keep-going -j auto -b html docs docs/_build/html
 
 .venv/pyvenv.cfg:
 	@$(PYTHON) -c 'import sys; sys.exit("pymoo_gridpath needs Python 3.11 or newer") if sys.version_info < (3, 11) else None'

@@ -38,7 +38,8 @@ myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 3
 nb_execution_mode = "auto"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 300
+# Of a cell in seconds: of an endless one, not of one that compiles kernels on a busy machine.
+nb_execution_timeout = 1200
 # Cells may write files.
 nb_execution_in_temp = True
 nb_merge_streams = True
@@ -66,28 +67,15 @@ html_static_path = ["_static"]
 html_css_files = ["custom.css"]
 html_show_sourcelink = False
 html_copy_source = False
-PLAIN_PAGES = (
-    "index",
-    "tutorials",
-    *finish.TUTORIALS,
-    "method",
-    "algorithms",
-    "exact",
-    "companions",
-    "papers",
-    "suites",
-    "peers",
-    "maps",
-    "explorer",
-    "command_line",
-    "glossary",
-    "internals",
-)
-html_sidebars = {page: [] for page in PLAIN_PAGES}
+# Only the reference has enough pages for a list of them on the left, which takes a quarter of the width.
+_SOURCE = Path(__file__).resolve().parent
+_FILES = [*_SOURCE.glob("*.md"), *_SOURCE.glob("studies/*.md")]
+_PAGES = [file.relative_to(_SOURCE).with_suffix("").as_posix() for file in _FILES]
+html_sidebars = {page: [] for page in _PAGES if page != "reference"}
 html_theme_options = {
     "logo": {"text": "pymoo_gridpath"},
     "show_toc_level": 2,
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 4,
     "navigation_with_keys": False,
     "footer_start": ["copyright"],
     "footer_end": [],
@@ -111,7 +99,7 @@ def find_by_last_name(app, env, node, contnode):
     found = {(entry.docname, entry.node_id) for entry in named}
     if len(found) != 1:
         # In a docstring it may be code; on a page it was meant as a link.
-        if env.doc2path(node["refdoc"]).endswith(".md") and "<autosummary>" not in str(node.source):
+        if Path(env.doc2path(node["refdoc"])).suffix == ".md" and "<autosummary>" not in str(node.source):
             what = "nothing" if not found else f"{len(found)} things"
             logging.getLogger(__name__).warning("%s is the name of %s", target, what, location=node)
         return None
@@ -120,14 +108,20 @@ def find_by_last_name(app, env, node, contnode):
 
 
 def finish_site(app, error):
-    """Draw the thumbnails of the gallery and check what Sphinx does not: links as they stand in the pages, and their length."""
+    """Draw the thumbnails of the gallery and check what Sphinx does not: links as they stand in the pages, what is too much."""
     if error or app.builder.name != "html":
         return
     folder = Path(app.outdir).resolve()
     pages = finish.read_pages(folder)
-    wrong = finish.draw_thumbnails(folder, pages) + finish.broken_links(folder, pages) + finish.long_tutorials(Path(app.srcdir))
+    wrong = finish.draw_thumbnails(folder, pages) + finish.broken_links(folder, pages)
+    wrong += finish.long_tutorials(folder, pages) + finish.wide_lines(folder, pages)
     if wrong:
         raise ExtensionError("\n".join(["the site is not as it should be:", *wrong]))
+
+
+def deal_pages(app, env, docnames):
+    """Mix pages whose code runs with the others, since processes of a parallel build take pages by the dozen."""
+    docnames[:] = [name for first in range(_HANDS) for name in docnames[first::_HANDS]]
 
 
 def clear_stubs(app, config):
@@ -145,8 +139,13 @@ def set_up_kernels(app, config):
     os.environ["DOCS_FOLDER"] = str(app.srcdir)
 
 
+# Into so many parts, at most, a parallel build divides the pages.
+_HANDS = 16
+
+
 def setup(app):
     app.connect("config-inited", clear_stubs)
     app.connect("config-inited", set_up_kernels)
+    app.connect("env-before-read-docs", deal_pages)
     app.connect("missing-reference", find_by_last_name)
     app.connect("build-finished", finish_site)

@@ -18,7 +18,8 @@ from pymoo_gridpath.decision import TradeOffSet
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.operators import paper_operators
 from pymoo_gridpath.plotting import plot_convergence, plot_front, plot_map, plot_paths, save_figures
-from pymoo_gridpath.plotting.style import GROWN, NAME_STYLES, OCCUPIED, STYLE
+from pymoo_gridpath.plotting.maps import figure_size
+from pymoo_gridpath.plotting.style import GROWN, NAME_STYLES, OCCUPIED, STYLE, new_axes
 from pymoo_gridpath.problems import random_dense_grid
 
 mpl.use("Agg")
@@ -188,11 +189,26 @@ def test_the_legend_covers_no_cell(two):
         ax = plot_paths(trade_off)
         ax.figure.draw_without_rendering()
         box = ax.get_legend().get_window_extent()
-        assert not box.overlaps(ax.get_window_extent())
+        assert not box.overlaps(ax.get_window_extent()) and not box.overlaps(ax.xaxis.label.get_window_extent())
 
 
-def _wide_set():
-    problem = GridPathProblem(OccupancyGrid(np.zeros((60, 240))), (3, 3), (230, 50), "integer")
+@pytest.mark.parametrize("height", [60, 150])
+def test_many_names_make_the_legend_taller_and_not_the_map_smaller(height):
+    trade_off = _wide_set(height)
+    ax = new_axes(figure_size(trade_off.problem.grid))
+    for name in ("unknown, taken as occupied", "too near for the robot", "safest", "smoothest", "widest", "steadiest"):
+        ax.plot([], [], label=name)
+    plot_paths(trade_off, ax=ax)
+    figure = ax.figure
+    figure.draw_without_rendering()
+    legend, cells, label = (part.get_window_extent() for part in (ax.get_legend(), ax, ax.xaxis.label))
+    assert not legend.overlaps(cells) and not legend.overlaps(label)
+    assert cells.width > 0.65 * figure.bbox.width  # of a flat map the legend takes height
+    assert legend.x0 >= 0 and legend.x1 <= figure.bbox.width and legend.y0 >= 0
+
+
+def _wide_set(height=60):
+    problem = GridPathProblem(OccupancyGrid(np.zeros((height, 240))), (3, 3), (230, 50), "integer")
     return TradeOffSet.from_genes(problem, np.ones((1, problem.n_var), dtype=int))
 
 

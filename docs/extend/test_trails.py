@@ -37,7 +37,9 @@ class TestBoxes(MapFormatSuite):
     format = Boxes
 
     def write(self, path, grid):
-        boxes = [f"{x} {y} 1 1" for x in range(grid.width) for y in range(grid.height) if grid.occupied[y, x]]
+        boxes = [
+            f"{x} {y} 1 1" for x in range(grid.width) for y in range(grid.height) if grid.occupied[y, x]
+        ]
         path.write_text("\n".join([f"{grid.width} {grid.height}", *boxes]))
 
 

@@ -19,7 +19,7 @@ from pymoo_gridpath.representations import Representation
 
 @register
 class WalkingTime(Objective):
-    """Minutes on foot over a hill in the middle of the map, by Tobler's function of the slope (1993)."""
+    """Minutes on foot over a hill in the middle of the map, by Tobler's function of the slope."""
 
     name, label = "walking_time", "Walking time [min]"
 
@@ -44,14 +44,15 @@ class WalkingTime(Objective):
 
 @register
 class Stops(Representation):
-    """The genes are the cells at which a path changes its heading, and the goal again to the end of the row."""
+    """The genes are the cells at which a path changes its heading, and the goal to the end of the row."""
 
     name = "stops"
 
     def __init__(self, grid, start, goal):
         super().__init__(grid, start, goal)
         self.n_var = self.max_cells = self.moves.n_cells
-        self.xl, self.xu = np.zeros(self.n_var, dtype=int), np.full(self.n_var, grid.width * grid.height - 1)
+        self.xl = np.zeros(self.n_var, dtype=int)
+        self.xu = np.full(self.n_var, grid.width * grid.height - 1)
         self.xl[0] = self.xu[0] = start[1] * grid.width + start[0]
         self.xl[-1] = self.xu[-1] = goal[1] * grid.width + goal[0]
 
@@ -60,7 +61,7 @@ class Stops(Representation):
         stops = np.stack([x, y], axis=2)
         way = np.diff(stops, axis=1)
         n_steps = np.abs(way).max(axis=2)
-        # From stop to stop, diagonally first: cell k of a leg is k steps along each axis, or as many as there are.
+        # From stop to stop, diagonally first: cell k of a leg is k steps along each axis, or all there are.
         leg = np.repeat(np.arange(n_steps.size), n_steps.ravel())
         k = 1 + np.arange(len(leg)) - np.repeat(n_steps.cumsum() - n_steps.ravel(), n_steps.ravel())
         way = way.reshape(-1, 2)[leg]
@@ -101,7 +102,7 @@ class Nudge(Mutation):
 
 @register
 class WeightedPaths(Planner):
-    """The cheapest paths for weighted sums of the objectives' costs of cells and moves, by Dijkstra's method."""
+    """The cheapest paths for weighted sums of the costs of cells and moves, by Dijkstra's method."""
 
     name = "weighted"
 
@@ -113,7 +114,8 @@ class WeightedPaths(Planner):
         moves = problem.representation.moves
         tail, heading = np.nonzero(moves.legal[:, None] >> np.arange(8) & 1)
         head = tail + moves.offsets[heading]
-        costs = np.stack([self._costs(one, problem.grid, heading, moves.to_grid(head)) for one in problem.objectives])
+        cells = moves.to_grid(head)
+        costs = np.stack([self._costs(one, problem.grid, heading, cells) for one in problem.objectives])
         costs /= costs.mean(axis=1, keepdims=True) + 1e-9
         ends = np.array([tail, head], dtype=np.int32)  # what scipy before 1.15 takes
         start, goal = moves.index(problem.start), moves.index(problem.goal)
@@ -134,13 +136,14 @@ class WeightedPaths(Planner):
         cost = np.zeros(len(cell)) if field is None else np.ravel(field)[cell]
         if steps is not None:
             steps = np.asarray(steps)
-            cost = cost + (steps[heading % 2] if steps.ndim == 1 else steps.reshape(8, -1)[heading, cell])
+            steps = steps[heading % 2] if steps.ndim == 1 else steps.reshape(8, -1)[heading, cell]
+            cost = cost + steps
         return cost
 
 
 @register
 class Boxes(MapFormat):
-    """Width and height of the map on the first line, and "x y width height" of an obstacle on each other."""
+    """Width and height on the first line, and "x y width height" of an obstacle on each other."""
 
     name, suffixes = "boxes", (".boxes",)
 
@@ -152,7 +155,8 @@ class Boxes(MapFormat):
         for number, line in enumerate(lines[1:], 2):
             x, y, w, h = self._numbers(path, number, line, ["x", "y", "width", "height"])
             if x + w > width or y + h > height:
-                raise MapError(path, f"line {number} is {line[:40]!r}, expected a box within {width} x {height} cells")
+                box = f"a box within {width} x {height} cells"
+                raise MapError(path, f"line {number} is {line[:40]!r}, expected {box}")
             occupied[y : y + h, x : x + w] = True
         return make_grid(path, occupied, corner_cutting=corner_cutting, resolution=resolution)
 
@@ -160,7 +164,8 @@ class Boxes(MapFormat):
     def _numbers(path, number, line, names):
         words = line.split()
         if len(words) != len(names) or not all(word.isdecimal() and len(word) < 9 for word in words):
-            raise MapError(path, f"line {number} is {line[:40]!r}, expected whole numbers: {', '.join(names)}")
+            numbers = f"whole numbers: {', '.join(names)}"
+            raise MapError(path, f"line {number} is {line[:40]!r}, expected {numbers}")
         return map(int, words)
 
 

@@ -316,16 +316,16 @@ def _draw_legend(ax: Axes, grid: OccupancyGrid) -> None:
         range(len(labels)), key=lambda k: 2 if labels[k].startswith(("other", "too")) else labels[k] in ("start", "goal")
     )
     handles, labels = [handles[k] for k in order], [labels[k] for k in order]
-    if _is_wide(grid):
-        columns = len(handles) if len(handles) <= 4 else (len(handles) + 1) // 2
-        ax.legend(
-            handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.42 / _axes_height(ax)), ncols=columns, handlelength=3
-        )
-    else:
+    if not _is_wide(grid):
         ax.legend(handles, labels, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, handlelength=3)
-
-
-def _axes_height(ax: Axes) -> float:
-    """Return the height of the Axes on paper in inches, at its equal aspect."""
+        return
+    # A fixed way below the axes, however tall they become; a legend much wider than they are would make them narrower.
+    below = ax.transAxes + ScaledTranslation(0.0, -0.42, ax.figure.dpi_scale_trans)
+    most = len(handles) if len(handles) <= 4 else (len(handles) + 1) // 2
     ax.apply_aspect()
-    return ax.get_window_extent().height / ax.figure.dpi
+    width = 1.15 * ax.get_window_extent().width  # to which a figure of its own stretches them
+    look = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "bbox_transform": below, "handlelength": 3}
+    for columns in range(most, 0, -1):
+        legend = ax.legend(handles, labels, ncols=columns, **look)
+        if legend.get_window_extent().width <= width:
+            break
