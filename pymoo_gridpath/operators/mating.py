@@ -77,7 +77,8 @@ class ArrayMating(Mating):
         n = self.crossover.n_offsprings
         crossed = random_state.random(X.shape[1]) < number(self.crossover.prob)
         children = self.crossover._do(problem, X, random_state=random_state, **kwargs).astype(X.dtype, copy=False)
-        children[:, ~crossed] = X[np.arange(n) % len(X)][:, ~crossed]
+        alike = np.flatnonzero(~crossed)
+        children[:, alike] = X[(np.arange(n) % len(X))[:, None], alike]
         return children.reshape(-1, X.shape[-1])
 
     def _mutated_and_repaired(self, problem, X, random_state, kwargs):
