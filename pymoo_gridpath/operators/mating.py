@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 
 import numpy as np
 from pymoo.algorithms.moo.moead import NeighborhoodSelection
@@ -171,7 +172,7 @@ def makes_legal(operator) -> bool:
     return False
 
 
-def _unseen(X: np.ndarray, seen: set[bytes]) -> np.ndarray:
+def _unseen(X: np.ndarray, seen: set[Hashable]) -> np.ndarray:
     """Return the rows of X that are not in ``seen``, each once, and add them to it."""
     new = []
     for k, key in enumerate(row_keys(X)):
