@@ -11,7 +11,7 @@ from pymoo.core.duplicate import DuplicateElimination
 from pymoo_gridpath.registry import OPERATORS
 
 # Rows of more genes are not hashed byte by byte.
-_LONG = 512
+_LONG = 2000
 
 
 @OPERATORS.register

@@ -232,7 +232,7 @@ def test_edge_fixing_rounds_real_genes():
     assert X[1, 0] == 7 and (p.xl <= X).all() and (p.xu >= X).all()
 
 
-@given(seeds, st.sampled_from([3, 600]), st.sampled_from([int, float]))
+@given(seeds, st.sampled_from([3, 2100]), st.sampled_from([int, float]))
 def test_row_duplicates_keeps_what_the_default_elimination_keeps(seed, n_var, kind):
     rng = np.random.default_rng(seed)
     few = np.repeat(rng.integers(0, 2, size=(30, 3)), n_var // 3, axis=1).astype(kind)
@@ -244,7 +244,7 @@ def test_row_duplicates_keeps_what_the_default_elimination_keeps(seed, n_var, ki
 
 def test_long_rows_of_equal_sums_are_told_apart(monkeypatch):
     monkeypatch.setattr(duplicates, "_factors", lambda n: np.ones(n, dtype=np.uint64))
-    X = np.zeros((6, 600), dtype=int)
+    X = np.zeros((6, 2100), dtype=int)
     X[np.arange(6), [0, 1, 0, 5, 1, 7]] = 1
     kept = RowDuplicates().do(Population.new("X", X)).get("X")
     assert np.argmax(kept, axis=1).tolist() == [0, 1, 5, 7]
