@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 
 import numpy as np
 from pymoo.algorithms.moo.moead import NeighborhoodSelection
@@ -77,7 +78,8 @@ class ArrayMating(Mating):
         n = self.crossover.n_offsprings
         crossed = random_state.random(X.shape[1]) < number(self.crossover.prob)
         children = self.crossover._do(problem, X, random_state=random_state, **kwargs).astype(X.dtype, copy=False)
-        children[:, ~crossed] = X[np.arange(n) % len(X)][:, ~crossed]
+        alike = np.flatnonzero(~crossed)
+        children[:, alike] = X[(np.arange(n) % len(X))[:, None], alike]
         return children.reshape(-1, X.shape[-1])
 
     def _mutated_and_repaired(self, problem, X, random_state, kwargs):
@@ -170,7 +172,7 @@ def makes_legal(operator) -> bool:
     return False
 
 
-def _unseen(X: np.ndarray, seen: set[bytes]) -> np.ndarray:
+def _unseen(X: np.ndarray, seen: set[Hashable]) -> np.ndarray:
     """Return the rows of X that are not in ``seen``, each once, and add them to it."""
     new = []
     for k, key in enumerate(row_keys(X)):

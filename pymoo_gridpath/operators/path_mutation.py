@@ -16,9 +16,9 @@ from pymoo_gridpath.search.vary import REROUTE, SHIFT, STRAIGHTEN, Changes, vary
 #: The ways in which `PathMutation` changes a stretch, with the default shares.
 WAYS = {"weighted": 0.5, "random": 0.2, "shortcut": 0.1, "straighten": 0.1, "shift": 0.1}
 
-# A search expands several cells for each step of the stretch; where it may not so many, it is mostly given up. With 10 time is
-# saved, but less is found on maps of rooms.
-EXPANSIONS_PER_STEP = 5
+# A search expands several cells for each step of the stretch; where it may not so many, it is mostly given up. On maps of rooms
+# of 512 cells a side more is found than with 5 for each step, in less time, and than with half as many expansions.
+EXPANSIONS_PER_STEP = 14
 
 
 @OPERATORS.register
@@ -26,7 +26,7 @@ class PathMutation(Mutation):
     """Replace a random stretch between two cells of a path.
 
     The stretch has between one step and all of them, as likely 10 to 20 as 100 to 200, but no more than most searches can
-    bridge: a fifth of ``max_expansions``. For each path one of these ways is drawn:
+    bridge: a fourteenth of ``max_expansions``. For each path one of these ways is drawn:
 
     - "weighted": the cheapest route for random weights of the objectives that add up along a path.
     - "random": the cheapest route under random costs besides, three times as rough at most.
@@ -43,7 +43,7 @@ class PathMutation(Mutation):
         Share of each of the ways above, zero where left out; by default `WAYS`.
     margin : int, default 16
         New routes keep to the bounding box of the two cells, grown by so many cells on each side.
-    max_expansions : int, default 2500
+    max_expansions : int, default 5000
         Cells to expand in search of a route before giving up, which bounds the time that a mutation takes on large maps.
     prob : float, default 1.0
         Probability of an individual to be mutated at all.
@@ -52,7 +52,7 @@ class PathMutation(Mutation):
     # No child needs repair.
     makes_legal = True
 
-    def __init__(self, ways=None, margin: int = 16, max_expansions: int = 2500, prob: float = 1.0, **kwargs):
+    def __init__(self, ways=None, margin: int = 16, max_expansions: int = 5000, prob: float = 1.0, **kwargs):
         super().__init__(prob=in_range("prob", prob, 0, 1), **kwargs)
         self.shares = shares_of(ways, WAYS)
         self.margin = whole("margin", margin, 0, 10**6)

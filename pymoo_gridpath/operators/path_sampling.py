@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 import numpy as np
 from pymoo.core.sampling import Sampling
 from pymoo.util.reference_direction import UniformReferenceDirectionFactory
@@ -199,7 +201,7 @@ def noise_of(roughness: float, n: int, random_state) -> np.ndarray:
 
 def repeated_rows(X: np.ndarray) -> np.ndarray:
     """Return the numbers of the rows that equal an earlier one."""
-    seen: set[bytes] = set()
+    seen: set[Hashable] = set()
     repeated = []
     for k, key in enumerate(row_keys(X)):
         if key in seen:

@@ -12,11 +12,9 @@ from pymoo_gridpath import checks
 from pymoo_gridpath.errors import GridPathError
 from pymoo_gridpath.fields import BoxedField
 from pymoo_gridpath.grid import SQRT2, OccupancyGrid, check_grid
-from pymoo_gridpath.neighbourhood import HEADING_OF, TURN_UNIT, turns_between
+from pymoo_gridpath.neighbourhood import TURN_UNIT
+from pymoo_gridpath.paths.counts import Counts, counts_of, headings_of, steps_of, sums_of
 from pymoo_gridpath.paths.sequences import Sequences, check_sequences
-
-# The heading of a step by the signs of (dx, dy): entry 4 + sign(dx) + 3 * sign(dy).
-_HEADING = HEADING_OF.ravel().astype(np.int8)
 
 
 class Paths(ABC):
@@ -52,59 +50,31 @@ class Paths(ABC):
 
     def __getitem__(self, index) -> Paths:
         """Return the paths at a slice, a mask or an array of indices."""
-        chosen = check_chosen(index, len(self))
-        if isinstance(chosen, slice):
-            chosen = np.arange(len(self))[chosen]
-        return SequencePaths(self.grid, self.sequences.take(chosen))
+        return SequencePaths(self.grid, self.sequences.take(check_chosen(index, len(self))))
 
     @functools.cached_property
-    def _steps(self) -> tuple[np.ndarray, np.ndarray]:
-        """The step (dx, dy) from each visited cell, (0, 0) from the last one of a path, each int, shape (n_cells,)."""
-        cells, offsets = self.sequences
-        y = cells // self.grid.width
-        x = cells - y * self.grid.width
-        dx, dy = np.zeros_like(cells), np.zeros_like(cells)
-        np.subtract(x[1:], x[:-1], out=dx[:-1])
-        np.subtract(y[1:], y[:-1], out=dy[:-1])
-        dx[offsets[1:] - 1] = dy[offsets[1:] - 1] = 0
-        return dx, dy
+    def _counts(self) -> Counts:
+        return counts_of(self.sequences, self.grid)
 
-    @functools.cached_property
-    def _reach(self) -> tuple[np.ndarray, np.ndarray]:
-        """The longer and the shorter of |dx| and |dy| of each step, each int, shape (n_cells,)."""
-        across, up = np.abs(self._steps[0]), np.abs(self._steps[1])
-        return np.maximum(across, up), np.minimum(across, up)
-
-    def _sum(self, values: np.ndarray) -> np.ndarray:
-        """Return the sum over each path of a value for each of its cells, or of the steps from them, shape (N,)."""
-        return sums_of(values, self.sequences.offsets)
-
-    @functools.cached_property
+    @property
     def n_diagonal(self) -> np.ndarray:
         """Number of diagonal steps, int, shape (N,)."""
-        return self._sum(self._reach[1])
+        return self._counts.diagonal
 
     @property
     def n_straight(self) -> np.ndarray:
         """Number of horizontal and vertical steps, int, shape (N,)."""
-        return self._sum(self._reach[0]) - self.n_diagonal
+        return self._counts.straight
 
     @property
     def length(self) -> np.ndarray:
         """Length in cells: straight steps count 1, diagonal ones sqrt(2); float, shape (N,)."""
         return self.n_straight + SQRT2 * self.n_diagonal
 
-    @functools.cached_property
+    @property
     def turn(self) -> np.ndarray:
         """Total turn in degrees, the sum of the absolute heading changes along the path; int, shape (N,)."""
-        offsets = self.sequences.offsets
-        dx, dy = self._steps
-        heading = _HEADING.take(np.sign(dx) + 3 * np.sign(dy) + 4)
-        units = np.zeros(len(heading), dtype=np.int64)
-        turns_between(heading[:-1], heading[1:], out=units[1:])
-        # No turn is made at the first and at the last cell of a path.
-        units[offsets[:-1]] = units[offsets[1:] - 1] = 0
-        return TURN_UNIT * self._sum(units)
+        return TURN_UNIT * self._counts.turns
 
     def total(self, field: np.ndarray | BoxedField) -> np.ndarray:
         """Return the sum of a field over the visited cells, start and goal included.
@@ -118,7 +88,8 @@ class Paths(ABC):
         -------
         numpy.ndarray, shape (N,)
         """
-        return self._sum(check_summed(field, (self.grid.occupied.size,)).take(self.sequences.cells))
+        cells, offsets = self.sequences
+        return sums_of(check_summed(field, (self.grid.occupied.size,)).take(cells), offsets)
 
     def moves_total(self, enter: np.ndarray) -> np.ndarray:
         """Return the sum of the costs of the steps.
@@ -138,8 +109,7 @@ class Paths(ABC):
         expected = "a cost for each heading and cell, as an objective's moves returns them"
         enter = checks.array("enter", enter, (8, *self.grid.shape), expected=expected)
         cells, offsets = self.sequences
-        dx, dy = self._steps
-        heading = _HEADING.take(np.sign(dx) + 3 * np.sign(dy) + 4)
+        heading = headings_of(*steps_of(self.sequences, self.grid.width))
         costs = np.zeros(len(cells), dtype=enter.dtype)
         costs[1:] = enter.take(heading[:-1].astype(np.int64) * self.grid.occupied.size + cells[1:])
         # The start is not entered.
@@ -159,17 +129,7 @@ class Paths(ABC):
         allows to do so on one side, both do if both are occupied. A jump counts one for each cell that it leaves out, and so
         does a diagonal step where there are none.
         """
-        occupied, cells, (dx, dy) = self.grid.occupied.ravel(), self.sequences.cells, self._steps
-        long, short = self._reach
-        count = np.maximum(long - 1, 0)
-        count += occupied.take(cells)
-        neighbourhood = self.grid.neighbourhood
-        if neighbourhood.restricts:
-            diagonal = np.flatnonzero((long == 1) & (short == 1))
-            cell = cells[diagonal]
-            across, up = cell + dx[diagonal], cell + dy[diagonal] * self.grid.width
-            count[diagonal] += neighbourhood.crossings(occupied.take(across), occupied.take(up))
-        return self._sum(count)
+        return self._counts.interfering
 
     def cells(self, index: int) -> np.ndarray:
         """Return the grid cells (x, y) of one path in the order in which it visits them, int, shape (n_cells, 2)."""
@@ -222,11 +182,6 @@ class SequencePaths(Paths):
 def check_paths(paths: Paths) -> Paths:
     """Return a batch of decoded paths if it is one."""
     return checks.instance("paths", paths, Paths, ", as decode returns them")
-
-
-def sums_of(values: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Return the sum of the values of each path, which begin at its offset, shape (N,)."""
-    return np.add.reduceat(values, offsets[:-1]) if len(offsets) > 1 else values[:0]
 
 
 def check_summed(field: np.ndarray | BoxedField, *shapes: tuple[int, ...]) -> Any:

@@ -41,9 +41,9 @@ class Sequences(NamedTuple):
         # `numpy.diff` takes several times as long for a few paths.
         return self.offsets[1:] - self.offsets[:-1]
 
-    def take(self, chosen: np.ndarray) -> Sequences:
-        """Return some of the paths, by a bool for each, shape (N,), or by their numbers, in that order."""
-        index = np.flatnonzero(chosen) if chosen.dtype == bool else chosen
+    def take(self, chosen: np.ndarray | slice) -> Sequences:
+        """Return some of the paths, by a slice, by a bool for each, shape (N,), or by their numbers, in that order."""
+        index = np.arange(len(self.offsets) - 1)[chosen]
         lengths = self.lengths[index]
         offsets = np.zeros(len(lengths) + 1, dtype=np.int64)
         np.cumsum(lengths, out=offsets[1:])
@@ -67,10 +67,10 @@ def check_sequences(sequences: Sequences, n_cells: int) -> Sequences:
     rising = len(offsets) and offsets[0] == 0 and offsets[-1] == len(cells) and (offsets[1:] >= offsets[:-1]).all()
     if not rising or not checks.within(cells, 0, n_cells - 1):
         raise GridPathError(f"sequences hold other numbers, expected {expected}")
-    return Sequences(_for_kernels(cells), _for_kernels(offsets))
+    return Sequences(for_kernels(cells), for_kernels(offsets))
 
 
-def _for_kernels(values: np.ndarray) -> np.ndarray:
+def for_kernels(values: np.ndarray) -> np.ndarray:
     """Return numbers as kernels are compiled for: contiguous, and not read-only; for others they would be compiled again."""
     flags = values.flags
     if values.dtype == np.int64 and flags.c_contiguous and flags.writeable and type(values) is np.ndarray:

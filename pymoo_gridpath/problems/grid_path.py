@@ -45,7 +45,7 @@ PARETO_SECONDS = 2.0
 _ROUNDING = 1e-12
 
 # Genes that are evaluated at a time.
-PART_SIZE = 12000
+PART_SIZE = 100_000
 
 OBSTACLES: tuple[Obstacles, ...] = ("penalty", "constraint", "limit")
 
@@ -425,7 +425,7 @@ class GridPathProblem(Problem):
         return np.where(np.abs(over) <= _ROUNDING * self.potential_limit, 0.0, over)
 
     def _evaluate(self, x, out, *args, **kwargs):
-        # In parts small enough for their temporary arrays to stay in the processor's cache: about twice as fast.
+        # In parts small enough for their temporary arrays to stay in the processor's cache.
         n_parts = min(max(1, round(len(x) * self.n_var / PART_SIZE)), max(1, len(x)))
         if n_parts == 1:
             F, turn, interfering = self._measure(x)

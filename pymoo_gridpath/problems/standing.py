@@ -33,7 +33,7 @@ class Standing(Representation):
 
     def decode(self, X):
         """Return the same path for each row."""
-        return CellPaths._unchecked(self.grid, self.genes(X))
+        return CellPaths(self.grid, self.genes(X))
 
     def from_sequences(self, sequences):
         """Return the same row for each path."""

@@ -255,14 +255,24 @@ class Representation(ABC):
         GridPathError
             If X has another number of columns or holds what is no number.
         """
+        X = self._numbers(X)
+        if X.dtype.kind == "b" and self.vtype is bool:
+            return X.astype(np.int64, order="C")
+        kind = float if self.vtype is float else np.int64
+        # What `numpy.clip` does, in less time.
+        within = np.maximum(X, self.xl)
+        return np.minimum(within, self.xu, out=within, casting="unsafe").astype(kind, order="C", copy=False)
+
+    # -- what codings use -------------------------------------------------------------------------------------------------
+
+    def _numbers(self, X: np.ndarray) -> np.ndarray:
+        """Return X as numbers of whatever size, real ones rounded, but not if `vtype` is float."""
         expected = f"rows of {self.n_var} genes of the {self.name} representation"
         X = np.atleast_2d(checks.array("X", X, kinds="biufO", expected=expected))
         if X.ndim != 2:
             raise GridPathError(f"X is {shown(X)}, expected {expected}")
         if X.shape[1] != self.n_var:
             raise GridPathError(f"X has {X.shape[1]} columns, expected {self.n_var} genes of the {self.name} representation")
-        if X.dtype.kind == "b" and self.vtype is bool:
-            return X.astype(np.int64, order="C")
         if X.dtype.kind not in "biu":
             try:
                 X = X.astype(float)
@@ -272,13 +282,8 @@ class Representation(ABC):
                 raise GridPathError(
                     f"X holds values that are no finite numbers, expected genes of the {self.name} representation"
                 )
-            X = X if self.vtype is float else np.rint(X)
-        kind = float if self.vtype is float else np.int64
-        # What `numpy.clip` does, in less time.
-        within = np.maximum(X, self.xl)
-        return np.minimum(within, self.xu, out=within, casting="unsafe").astype(kind, order="C", copy=False)
-
-    # -- what codings use -------------------------------------------------------------------------------------------------
+            return X if self.vtype is float else np.rint(X)
+        return X
 
     def _checked_ends(self, sequences: Sequences) -> Sequences:
         return check_ends(sequences, self, self.moves.index(self.start), self.moves.index(self.goal), self.moves.n_cells)

@@ -15,6 +15,7 @@ from pymoo_gridpath.fields import BoxedField, check_costs, obstacle_potential
 from pymoo_gridpath.grid import Box, OccupancyGrid
 from pymoo_gridpath.neighbourhood import HEADINGS
 from pymoo_gridpath.paths import CellPaths, Paths
+from pymoo_gridpath.paths.cell import visited
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.representations.base import Representation, check_ends
 from pymoo_gridpath.search import UNREACHABLE
@@ -140,7 +141,9 @@ class CellSequence(Representation):
         CellPaths
             N paths from the start to the goal, legal or not.
         """
-        return CellPaths._unchecked(self.grid, self.genes(X), self._forward)
+        X = self._numbers(X)
+        rows = X if X.dtype.kind == "i" else self.genes(X)
+        return CellPaths._visiting(self.grid, visited(rows, self.xl, self.xu), self._forward)
 
     def encode(self, paths: Paths) -> np.ndarray:
         """Return the genes of paths of any representation, see `from_sequences`, int, shape (N, n_var)."""

@@ -8,7 +8,7 @@ from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.arrays import room
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import NOWHERE, find_route, make_work, unwind
+from pymoo_gridpath.search.route import NOWHERE, find_route, unwind, work_for
 from pymoo_gridpath.search.sequences import append_without_loops, mend
 from pymoo_gridpath.search.splice import write
 from pymoo_gridpath.search.terrain import Terrain, backwards
@@ -33,7 +33,9 @@ def cheapest_paths(terrain: Terrain, moves: Moves, weights: np.ndarray, noise: n
     Sequences
         N legal paths.
     """
-    return _completed(Sequences(*_cheapest_paths(terrain, make_work(terrain), weights, noise, max_cells)), terrain, moves)
+    with work_for(terrain) as work:
+        found = Sequences(*_cheapest_paths(terrain, work, weights, noise, max_cells))
+    return _completed(found, terrain, moves)
 
 
 def paths_through(
@@ -58,7 +60,9 @@ def paths_through(
     """
     heads = _branches(terrain, points, trees[:, 0], weights, noise)
     tails = _branches(backwards(terrain), points, trees[:, 1], weights, noise)
-    return _completed(Sequences(*_join(make_work(terrain), *heads, *tails, max_cells)), terrain, moves)
+    with work_for(terrain) as work:
+        found = Sequences(*_join(work, *heads, *tails, max_cells))
+    return _completed(found, terrain, moves)
 
 
 def _completed(paths: Sequences, terrain: Terrain, moves: Moves) -> Sequences:
@@ -72,7 +76,8 @@ def _completed(paths: Sequences, terrain: Terrain, moves: Moves) -> Sequences:
 def _branches(terrain: Terrain, points: np.ndarray, trees: np.ndarray, weights: np.ndarray, noise: np.ndarray) -> Sequences:
     """Return the routes from the terrain's start to cells, each in a tree of its own choice."""
     order = np.argsort(trees, kind="stable")
-    cells, ends = _grow(terrain, make_work(terrain), points[order], trees[order], weights, noise)
+    with work_for(terrain) as work:
+        cells, ends = _grow(terrain, work, points[order], trees[order], weights, noise)
     # Back into the order of the points.
     lengths = np.diff(ends)
     rank = np.empty_like(order)

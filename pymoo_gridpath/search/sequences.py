@@ -8,7 +8,7 @@ from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.arrays import room
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import descend, downhill, find_route, make_work, unwind
+from pymoo_gridpath.search.route import descend, downhill, find_route, unwind, work_for
 from pymoo_gridpath.search.shortest import UNREACHABLE
 from pymoo_gridpath.search.terrain import FULL_WEIGHT, Terrain, plain_terrain
 
@@ -60,7 +60,8 @@ def mend(sequences: Sequences, moves: Moves, start: int, goal: int, max_cells: i
     """
     terrain = plain_terrain(moves, start, goal)
     most = moves.n_cells if max_cells is None else max_cells
-    return Sequences(*_mend(terrain, make_work(terrain), sequences.cells, sequences.offsets, most))
+    with work_for(terrain) as work:
+        return Sequences(*_mend(terrain, work, sequences.cells, sequences.offsets, most))
 
 
 @kernel
@@ -122,9 +123,15 @@ def append_without_loops(path, length, place, out, n):
     out = room(out, n + length)
     i = 0
     while i < length:
-        out[n] = path[i]
-        n += 1
-        i = place[path[i]] + 1
+        # Mostly each cell is visited once: then the processor need not wait for its place to know the next one.
+        while i < length and place[path[i]] == i:
+            out[n] = path[i]
+            n += 1
+            i += 1
+        if i < length:
+            out[n] = path[i]
+            n += 1
+            i = place[path[i]] + 1
     return out, n
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from pymoo_gridpath.compiled import kernel
 from pymoo_gridpath.paths.sequences import Sequences
 from pymoo_gridpath.search.arrays import room
-from pymoo_gridpath.search.route import DX, DY, find_route, last_reached, make_work, unwind
+from pymoo_gridpath.search.route import DX, DY, find_route, last_reached, unwind, work_for
 from pymoo_gridpath.search.sequences import append_without_loops, heading_between
 from pymoo_gridpath.search.splice import write
 from pymoo_gridpath.search.terrain import Terrain
@@ -66,7 +66,8 @@ def vary(terrain: Terrain, paths: Sequences, changes: Changes, margin: int, limi
     Sequences
         N legal paths; those that cannot be changed so, or would have more than ``max_cells`` cells, are as they were.
     """
-    return Sequences(*_vary(terrain, make_work(terrain), *paths, changes, margin, limit, max_cells))
+    with work_for(terrain) as work:
+        return Sequences(*_vary(terrain, work, *paths, changes, margin, limit, max_cells))
 
 
 @kernel
@@ -95,7 +96,7 @@ def _vary(terrain, work, cells, offsets, changes, margin, limit, max_cells):
         if not done or total - ends[i] > max_cells:
             out, total = append_without_loops(old, len(old), work.place, out, ends[i])
         ends[i + 1] = total
-    return out[:total].copy(), ends
+    return out[:total], ends
 
 
 @kernel

@@ -241,7 +241,7 @@ def test_fewer_expansions_change_shorter_stretches():
     X = ReachableSampling()._do(problem, 200, random_state=np.random.default_rng(2))
     paths = problem.decode(X)
     shares = []
-    for most in (1, 20, 100):
+    for most in (1, 4 * EXPANSIONS_PER_STEP, 20 * EXPANSIONS_PER_STEP):
         mutation = PathMutation({"shortcut": 1.0}, max_expansions=most)
         changes = mutation._draw(problem, paths.sequences.lengths, np.random.default_rng(3))
         assert (changes.end - changes.begin).max() == max(most // EXPANSIONS_PER_STEP, 1)

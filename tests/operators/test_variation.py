@@ -24,6 +24,7 @@ from pymoo_gridpath.operators import (
     SinglePointCrossover,
     SmoothnessTournament,
     TwoPointCrossover,
+    duplicates,
     paper_operators,
 )
 from pymoo_gridpath.problems import GridPathProblem
@@ -231,13 +232,22 @@ def test_edge_fixing_rounds_real_genes():
     assert X[1, 0] == 7 and (p.xl <= X).all() and (p.xu >= X).all()
 
 
-@given(seeds)
-def test_row_duplicates_keeps_what_the_default_elimination_keeps(seed):
+@given(seeds, st.sampled_from([3, 2100]), st.sampled_from([int, float]))
+def test_row_duplicates_keeps_what_the_default_elimination_keeps(seed, n_var, kind):
     rng = np.random.default_rng(seed)
-    a, b, c = (Population.new("X", rng.integers(0, 2, size=(n, 3))) for n in (20, 5, 5))
+    few = np.repeat(rng.integers(0, 2, size=(30, 3)), n_var // 3, axis=1).astype(kind)
+    a, b, c = (Population.new("X", rows) for rows in np.split(few, (20, 25)))
     for others in ((), (b,), (b, c)):
         ours, theirs = RowDuplicates().do(a, *others), DefaultDuplicateElimination().do(a, *others)
         assert sorted(map(tuple, ours.get("X"))) == sorted(map(tuple, theirs.get("X"))) if len(theirs) else len(ours) == 0
+
+
+def test_long_rows_of_equal_sums_are_told_apart(monkeypatch):
+    monkeypatch.setattr(duplicates, "_factors", lambda n: np.ones(n, dtype=np.uint64))
+    X = np.zeros((6, 2100), dtype=int)
+    X[np.arange(6), [0, 1, 0, 5, 1, 7]] = 1
+    kept = RowDuplicates().do(Population.new("X", X)).get("X")
+    assert np.argmax(kept, axis=1).tolist() == [0, 1, 5, 7]
 
 
 def test_array_mating_returns_new_unique_children_and_changes_nothing():

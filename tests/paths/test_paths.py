@@ -10,7 +10,7 @@ from queries import queries, random_genes
 
 from pymoo_gridpath.fields import obstacle_potential
 from pymoo_gridpath.grid import OccupancyGrid
-from pymoo_gridpath.paths import CellPaths
+from pymoo_gridpath.paths import CellPaths, cell, counts
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.testing import reference
 
@@ -95,6 +95,25 @@ def test_padding_pauses_and_company_change_nothing(case, seed):
         assert np.array_equal(getattr(paths, measure)[mask], getattr(paths[mask], measure))
     assert np.array_equal(paths.total(field), paused.total(field))
     assert np.array_equal(paths.total(field)[mask], paths[mask].total(field))
+
+
+@given(rows_of_cells(), st.sampled_from([(8, True), (8, False), (8, "one side"), (4, False)]))
+def test_path_by_path_and_all_at_once_are_the_same(case, steps):
+    grid, rows = case
+    moves, corner_cutting = steps
+    grid = grid.replace(moves=moves, corner_cutting=corner_cutting)
+    n, most = rows.shape[1], grid.occupied.size - 1
+    # Some lie outside their bounds.
+    low, high = np.full(n, most // 8), np.full(n, most - most // 8)
+    with pytest.MonkeyPatch.context() as patched:
+        found = []
+        for compiled in (True, False):
+            patched.setattr(cell, "COMPILED", compiled)
+            patched.setattr(counts, "COMPILED", compiled)
+            sequences = cell.visited(rows, low, high)
+            found.append([*sequences, *counts.counts_of(sequences, grid)])
+    for one, other in zip(*found, strict=True):
+        assert np.array_equal(one, other) and one.dtype == other.dtype == np.int64
 
 
 def test_a_jump_is_an_octile_way_that_leaves_its_cells_out():

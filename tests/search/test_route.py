@@ -1,5 +1,7 @@
 """Terrains and routes against shortest paths of scipy."""
 
+import gc
+import weakref
 from itertools import pairwise
 
 import numpy as np
@@ -11,9 +13,10 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from pymoo_gridpath.fields import obstacle_potential
+from pymoo_gridpath.grid import OccupancyGrid
 from pymoo_gridpath.representations import make_representation
 from pymoo_gridpath.search.moves import Moves
-from pymoo_gridpath.search.route import NOWHERE, block_noise, find_route, last_reached, least_rest, make_work, unwind
+from pymoo_gridpath.search.route import NOWHERE, block_noise, find_route, last_reached, least_rest, make_work, unwind, work_for
 from pymoo_gridpath.search.shortest import UNREACHABLE
 from pymoo_gridpath.search.terrain import LARGEST_COST, make_terrain, plain_terrain, steps_through
 
@@ -263,3 +266,21 @@ def test_noise_is_even():
         grid = values.reshape(60, 60)
         for neighbour in (grid[1:, :-1], grid[:-1, 1:]):
             assert abs(np.corrcoef(grid[:-1, :-1].ravel(), neighbour.ravel())[0, 1]) < 0.06
+
+
+def test_working_arrays_are_lent_to_one_at_a_time_and_go_with_their_terrain():
+    grid = OccupancyGrid(np.zeros((4, 5)))
+    terrain = make_terrain(Moves(grid), 0, 19)
+    with work_for(terrain) as work, work_for(terrain) as other:
+        assert work is not other and len(work.cost) == len(other.cost) == 20
+        firsts = work, other
+    with work_for(terrain) as work:
+        assert any(work is first for first in firsts)
+    with pytest.raises(ZeroDivisionError), work_for(terrain) as broken:
+        raise ZeroDivisionError
+    with work_for(terrain) as work, work_for(terrain) as other:
+        assert work is not broken and other is not broken
+    gone = weakref.ref(work.cost)
+    del terrain, work, other, firsts, broken
+    gc.collect()
+    assert gone() is None
