@@ -85,6 +85,7 @@ def main() -> None:
     parser.add_argument("before", type=Path, nargs="?", help="a folder with the package in it")
     parser.add_argument("after", type=Path, nargs="?", help="another one")
     parser.add_argument("--seeds", type=int, default=11, help="maps of each kind")
+    parser.add_argument("--first", type=int, default=1, metavar="SEED", help="the first of them")
     parser.add_argument("--evaluations", type=int, default=20_000)
     parser.add_argument("--exact", type=float, default=120.0, metavar="SECONDS", help="for each exact front; 0 for none")
     parser.add_argument("--only", default="", help="kinds of map with this in their name alone")
@@ -100,7 +101,7 @@ def main() -> None:
     kinds = [kind for kind in KINDS if arguments.only in kind]
     rows = {kind: [] for kind in kinds}
     # All kinds of one seed after another, so that whoever ends it early has as many of each.
-    for seed, kind in product(range(1, arguments.seeds + 1), kinds):
+    for seed, kind in product(range(arguments.first, arguments.first + arguments.seeds), kinds):
         found = {}
         for side in SIDES if seed % 2 else reversed(SIDES):
             found[side] = versions[side].turn(seed * len(KINDS) + list(KINDS).index(kind))
