@@ -323,7 +323,7 @@ def _paths(w: World) -> dict[str, Call]:
             {"movers": [{1: (0, 1), 3: (0, 3)}], "after": "gone", "before": "absent", "gaps": "interpolate"},
         ),
         "Trajectories.cells": (Trajectories([[(0, 1), (0, 2)]]).cells, {"n_ticks": 4}),
-        "CellPaths": (partial(_measured, CellPaths), {"grid": w.grid, "rows": cells.rows}),
+        "CellPaths": (partial(_measured, CellPaths), {"grid": w.grid, "rows": w.rows(w.codings["cells"])}),
         "CellPaths.cells": (cells.cells, {"index": 1}),
         "CellPaths.total": (cells.total, {"field": w.field.ravel()}),
         "ColumnPaths.moves_total": (paths.moves_total, {"enter": w.enter}),

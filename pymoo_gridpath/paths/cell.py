@@ -39,7 +39,7 @@ class CellPaths(Paths):
     ([6.0], [180], [0])
     """
 
-    # The signs of the steps along x and y that are no steps back, of paths which may not take those; set by `_unchecked`.
+    # The signs of the steps along x and y that are no steps back, of paths which may not take those; set by `_visiting`.
     _forward: tuple[int, int] | None = None
 
     def __init__(self, grid: OccupancyGrid, rows: np.ndarray):

@@ -137,7 +137,7 @@ def test_one_problem_has_one_form(plan):
     first = make_study(problems=[{**one, "moving": forms[0]}], algorithms=[{"algorithm": "DNSGA2"}], seeds=1)
     assert [run.key for run in plan_study(first).runs] == [
         "94ec543472917c828fa6a3d7365ed52d",
-        "f51bd3be9cea94ee35aab492a624d297",
+        "431f33dddfc7667915c5ede41a36fe40",
     ]
 
 
