@@ -114,7 +114,7 @@ def _read_tags(path, file: BinaryIO, end: str, big: bool) -> Tags:
         elif kind in _KINDS and number:
             form = f"{end}{number}{_KINDS[kind]}"
             if struct.calcsize(form) > len(value):
-                file.seek(struct.unpack(pointer, value)[0])
+                _go(file, struct.unpack(pointer, value)[0])
                 value = file.read(struct.calcsize(form))
             values = struct.unpack(form, value[: struct.calcsize(form)])
             tags[tag] = values[0] if kind == 2 else values
@@ -123,7 +123,7 @@ def _read_tags(path, file: BinaryIO, end: str, big: bool) -> Tags:
 
 def _entries(path, file: BinaryIO, end: str, big: bool, at: int) -> list[tuple[int, int, int, bytes]]:
     """Return the tags of a directory with their kind, count and value, or raise MapError where they are too many."""
-    file.seek(at)
+    _go(file, at)
     (count,) = _unpack(file, end + ("Q" if big else "H"))
     if count > MAX_TAGS:
         raise MapError(path, f"the image has {count} tags, expected at most {MAX_TAGS}")
@@ -134,6 +134,13 @@ def _entries(path, file: BinaryIO, end: str, big: bool, at: int) -> list[tuple[i
         if number > MAX_VALUES and kind not in (1, 2, 7):
             raise MapError(path, f"the tag {tag} of the image has {number} values, expected at most {MAX_VALUES}")
     return entries
+
+
+def _go(file: BinaryIO, at: int) -> None:
+    """Go to where a file says that there is more, or raise OverflowError where no file can have any."""
+    if at >= 2**63:
+        raise OverflowError(f"byte {at} of a file")
+    file.seek(at)
 
 
 def _unpack(file: BinaryIO, form: str) -> tuple[int, ...]:

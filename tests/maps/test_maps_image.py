@@ -7,7 +7,7 @@ import pytest
 from PIL import Image, TiffImagePlugin
 
 from pymoo_gridpath.errors import MapWarning
-from pymoo_gridpath.maps import _declared, _files, read_image, read_ros
+from pymoo_gridpath.maps import _declared, _files, load_map, read_image, read_ros
 from pymoo_gridpath.maps import image as image_reader
 
 
@@ -241,6 +241,14 @@ def test_a_tiff_is_believed_with_the_bytes_behind_it(write, refused):
     refused(read_image, write("g.tif", grey_tiff(1, 200_000, bytes(200_000), strips=200_000, t278=(1,))), None, "200000 parts")
     tiles = {"t322": (4096,), "t323": (4096,), "t324": (-1,), "t325": (9,)}
     refused(read_image, write("h.tif", grey_tiff(3, 3, bytes(9), **tiles)), None, "tiles of 4096 x 4096")
+
+
+@pytest.mark.parametrize("at", [2**63 - 1, 2**63, 2**64 - 1])
+def test_a_tiff_with_its_directory_beyond_every_file_is_refused(write, refused, at):
+    """Where a number of 64 bits says that it lies."""
+    path = write("a.tif", b"II+\0\x08\0\0\0" + struct.pack("<Q", at) + bytes(40))
+    refused(read_image, path, None, "damaged or cut short")
+    refused(load_map, path, None, "damaged or cut short")
 
 
 @pytest.mark.parametrize("compression", [1, 5, 8, 32773])
