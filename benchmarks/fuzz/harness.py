@@ -188,7 +188,7 @@ def main(
     planted: Mapping[str, Callable[[], AbstractContextManager]],
     count: int,
     sentences: tuple[type[BaseException], ...] = (GridPathError,),
-    planted_count: int = 3000,
+    planted_count: int = 10_000,
 ) -> int:
     """Run a fuzzer's command line; return 0 if there was no fault, or every planted one was caught.
 
